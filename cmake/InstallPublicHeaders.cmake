@@ -2,7 +2,10 @@
 # `destination`, leaving out what begins with one of `without`. `source` is the project's folder.
 cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${source}/cmake/public_headers.txt patterns REGEX "^[a-z]")
-set(todo "")
+# bodyloom.h is the one header that is in no folder.
+file(STRINGS ${source}/include/bodyloom/bodyloom.h includes REGEX "^#include \"bodyloom/")
+list(TRANSFORM includes REPLACE "^#include \"bodyloom/([^\"]*)\".*$" "\\1")
+set(todo ${includes})
 foreach(pattern IN LISTS patterns)
   file(GLOB found RELATIVE ${source} ${source}/${pattern})
   if(NOT found AND NOT pattern MATCHES "[*]")
@@ -14,6 +17,7 @@ foreach(prefix IN LISTS without)
   list(FILTER todo EXCLUDE REGEX "^${prefix}")
 endforeach()
 
+file(INSTALL ${source}/include/bodyloom/bodyloom.h DESTINATION ${destination} MESSAGE_NEVER)
 set(public "")
 while(todo)
   list(POP_FRONT todo header)
@@ -31,4 +35,5 @@ foreach(header IN LISTS public)
   file(INSTALL ${source}/${header} DESTINATION ${destination}/${folder} MESSAGE_NEVER)
 endforeach()
 list(LENGTH public number)
+math(EXPR number "${number} + 1")  # bodyloom.h
 message(STATUS "Installed ${number} public headers in ${destination}")

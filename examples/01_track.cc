@@ -3,10 +3,7 @@
 //   01_track DETECTIONS TRACK.npz
 #include <iostream>
 
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/pipelines/with_builtins.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/bodyloom.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) {
@@ -23,7 +20,7 @@ int main(int argc, char** argv) {
   bodyloom::TrackSequenceOptions options;
   options.camera_knowledge = bodyloom::CameraKnowledge::kUnknownFocal;
   // The built-in body, pose prior and lifter, where the input names none of its own.
-  const auto [track, summary] = bodyloom::TrackSequence(bodyloom::WithBuiltins(input), options);
+  const auto [track, summary] = bodyloom::TrackSequence(input, options);
   std::cout << summary.BriefReport() << "\n";
   if (!summary.IsUsable()) return 1;
   bodyloom::WriteTrack(argv[2], track);

@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/pipelines/with_builtins.h"
+#include "bodyloom/tracking/builtin_models.h"
 #include "bodyloom/tracking/live/live_tracker.h"
 
 int main(int argc, char** argv) {

@@ -6,7 +6,6 @@
 #include "bodyloom/data_tools/body/body_io.h"
 #include "bodyloom/data_tools/motion/track_io.h"
 #include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/pipelines/with_builtins.h"
 #include "bodyloom/tracking/track_sequence.h"
 
 int main(int argc, char** argv) {
@@ -24,7 +23,7 @@ int main(int argc, char** argv) {
   input.camera.height = keypoints.image_height;
   bodyloom::TrackSequenceOptions options;
   options.camera_knowledge = bodyloom::CameraKnowledge::kUnknownFocal;
-  const auto [track, summary] = bodyloom::TrackSequence(bodyloom::WithBuiltins(input), options);
+  const auto [track, summary] = bodyloom::TrackSequence(input, options);
   std::cout << summary.BriefReport() << "\n";
   if (!summary.IsUsable()) return 1;
   bodyloom::WriteTrack(argv[3], track);

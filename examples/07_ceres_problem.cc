@@ -10,15 +10,13 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/pipelines/with_builtins.h"
 #include "bodyloom/tracking/build_ceres_problem.h"
 
 using namespace bodyloom;
 int main() {
   const SynthClip clip = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 24, 15), {});
-  TrackSequenceInput seen;
-  seen.keypoints = &clip.keypoints, seen.camera = clip.truth.camera;
-  const TrackSequenceInput input = WithBuiltins(seen);
+  TrackSequenceInput input;
+  input.keypoints = &clip.keypoints, input.camera = clip.truth.camera;
   const auto clip_problem = BuildCeresProblem(input);
   CeresProblem& blocks = *clip_problem->blocks();
   ceres::Problem& problem = blocks.problem();

@@ -11,7 +11,7 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/pipelines/with_builtins.h"
+#include "bodyloom/tracking/builtin_models.h"
 #include "bodyloom/tracking/live/live_tracker.h"
 #include "python/arrays.h"
 #include "python/bindings.h"

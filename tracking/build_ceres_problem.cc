@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/builtin_models.h"
 #include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/problem/input_checks.h"
 
@@ -34,8 +35,9 @@ TrackSequenceResult ClipCeresProblem::Finish() {
 
 std::unique_ptr<ClipCeresProblem> BuildCeresProblem(const TrackSequenceInput& input,
                                                     const TrackSequenceOptions& options) {
-  CheckInput(input, options);
-  return std::make_unique<ClipCeresProblem>(input, options);
+  const TrackSequenceInput whole = WithBuiltins(input, options);
+  CheckInput(whole, options);
+  return std::make_unique<ClipCeresProblem>(whole, options);
 }
 
 }  // namespace bodyloom

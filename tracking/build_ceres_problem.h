@@ -36,8 +36,9 @@ class ClipCeresProblem {
 };
 
 /// States the problem of a clip as TrackSequence() hands it to Ceres: all terms of all frames, at the values to which
-/// the stages before have brought them (SequenceSolver::kChainThenCeres). `input` is borrowed for the life of the
-/// result; throws as TrackSequence() does. Every observation is a residual block with a loss function of its own.
+/// the stages before have brought them (SequenceSolver::kChainThenCeres). What `input`
+/// points to is borrowed for the life of the result; defaults are filled in and it throws as TrackSequence() does.
+/// Every observation is a residual block with a loss function of its own.
 std::unique_ptr<ClipCeresProblem> BuildCeresProblem(const TrackSequenceInput& input,
                                                     const TrackSequenceOptions& options = {});
 

@@ -35,7 +35,7 @@
 #include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -130,7 +130,7 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
     input.lifted = &lifted;
   }
   const Stopwatch track_watch;
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   const double track_s = track_watch.seconds();
   WriteTrack(track_path, result.track);
   const double file_s = watch.seconds();

@@ -29,7 +29,7 @@
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 namespace {
@@ -82,7 +82,7 @@ Outcome Solve(const Problem& problem, const Motion& start, const std::string& so
   options.max_iterations = 100;
   options.estimate_uncertainty = false;
   const Stopwatch watch;
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   Outcome outcome;
   outcome.seconds = watch.seconds();
   outcome.iterations = result.summary.iterations;

@@ -20,7 +20,7 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -46,7 +46,7 @@ BenchRow TrackAndScore(const std::string& noise, const std::string& name, const 
   TrackSequenceOptions options;
   options.num_threads = arguments.Integer("threads");
   const Stopwatch watch;
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   const double seconds = watch.seconds();
 
   VertexErrorOptions evaluate;

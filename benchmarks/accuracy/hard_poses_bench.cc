@@ -25,7 +25,7 @@
 #include "bodyloom/geometry/math/procrustes.h"
 #include "bodyloom/render/view/contact_sheet.h"
 #include "bodyloom/render/view/overlay.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -162,7 +162,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       options.num_threads = arguments.Integer("threads");
       options.part_labels.clothes_sigma_share = 0;  // these masks are of bare bodies
       const Stopwatch watch;
-      const TrackSequenceResult result = TrackSequence(input, options);
+      const TrackSequenceResult result = FitClip(input, options);
       const double seconds = watch.seconds();
       BODYLOOM_CHECK(result.summary.IsUsable(), "person ", subject, ": ", result.summary.message);
       const MatrixX3d ours = TrackVertices(BuiltinBody(), result.track, 0);

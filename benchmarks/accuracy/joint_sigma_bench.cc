@@ -32,7 +32,7 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -51,7 +51,7 @@ void TrackAndJudge(const std::string& group, const std::string& label, const Key
   input.lifter = &BuiltinLifter();
   input.keypoints = &keypoints;
   input.camera = camera;
-  const TrackSequenceResult result = TrackSequence(input, TrackSequenceOptions());
+  const TrackSequenceResult result = FitClip(input, TrackSequenceOptions());
   if (!result.summary.IsUsable()) return;
   std::vector<int> source;
   std::vector<MatrixX3d> found, expected;

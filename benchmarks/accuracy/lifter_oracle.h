@@ -10,7 +10,9 @@
 #include "bodyloom/geometry/scene/lifter_weights.h"
 #include "bodyloom/geometry/scene/observations.h"
 #include "bodyloom/tracking/lifter/lift_keypoints.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

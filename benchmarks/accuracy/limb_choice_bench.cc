@@ -37,10 +37,10 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/math/procrustes.h"
 #include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/initialise/swap_repair.h"
 #include "bodyloom/tracking/lifter/lift_keypoints.h"
-#include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -104,7 +104,7 @@ Solved Solve(const Clip& clip, const std::vector<LiftedFrame>& lifted) {
   options.camera_knowledge = CameraKnowledge::kKnown;
   options.estimate_uncertainty = false;
   options.fit_smoothness = false;  // one law for all candidates: their costs are compared
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   return {result.summary.final_cost, LifterMetres(BuiltinBody(), result.track.motion.betas), result.track.coco17};
 }
 

@@ -28,7 +28,7 @@
 #include "bodyloom/data_tools/motion/motion_tools.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 namespace {
@@ -75,7 +75,7 @@ std::vector<double> TrackAndAdd(const SynthClip& clip, const LifterWeights* lift
   TrackSequenceOptions options;
   options.estimate_uncertainty = false;
   if (!ground) options.ground = GroundOptions::Off();
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   if (!result.summary.IsUsable()) return {};
   const std::vector<int> hips = {11, 12};
   const auto &found = result.track.coco17, &truth = clip.truth.coco17;

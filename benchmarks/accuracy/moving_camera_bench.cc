@@ -36,7 +36,7 @@
 #include "bodyloom/geometry/base/units.h"
 #include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 namespace {
@@ -76,7 +76,7 @@ std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<Cam
   input.camera_scale_m = scale_m;
   TrackSequenceOptions options;
   options.estimate_uncertainty = false;
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   if (!result.summary.IsUsable()) return std::vector<double>(9, kNotMeasured);
   const WorldDrift drift = MeasureWorldDrift(result.track, clip.truth, BuiltinBody());
   double seconds = 0;

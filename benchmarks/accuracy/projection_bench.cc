@@ -30,8 +30,8 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/base/units.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/lifter/given_landmarks.h"
-#include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -105,7 +105,7 @@ BenchRow TrackAndScore(const std::string& kind, const std::string& clip, const V
     input.lifter = &BuiltinLifter();
   }
   const Stopwatch watch;
-  const Track track = TrackSequence(input, options).track;
+  const Track track = FitClip(input, options).track;
   const double seconds = watch.seconds();
 
   const VertexErrors errors =

@@ -30,6 +30,7 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/render/raster/visibility_buffer.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/initialise/lifted_landmarks.h"
 #include "bodyloom/tracking/initialise/lifted_start.h"
 #include "bodyloom/tracking/problem/clip_term.h"
@@ -38,7 +39,6 @@
 #include "bodyloom/tracking/terms/landmarks.h"
 #include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
 #include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
-#include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {
@@ -70,7 +70,7 @@ TrackSequenceInput InputOf(const SynthClip& clip) {
 std::vector<double> TrackAndScore(const TrackSequenceInput& input, const TrackSequenceOptions& options,
                                   const SynthClip& clip) {
   const Stopwatch watch;
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   const double seconds = watch.seconds();
   BODYLOOM_CHECK(result.summary.IsUsable(), "not tracked: ", result.summary.message);
   VertexErrorOptions evaluate;

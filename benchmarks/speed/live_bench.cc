@@ -31,6 +31,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/base/stopwatch.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/live/track_live.h"
 #include "bodyloom/tracking/solvers/solve_sequence.h"
 #include "tests/support/paths.h"
@@ -178,7 +179,7 @@ class Bench {
     const int T = input.keypoints != nullptr ? input.keypoints->num_frames() : input.dense->num_frames();
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
-    const TrackSequenceResult batch = TrackSequence(input, options_.solve);
+    const TrackSequenceResult batch = FitClip(input, options_.solve);
     const double fps = T / watch.seconds(), cpu_ms = 1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / T;
     Evaluation evaluation;
     const double error = score(batch.track, &evaluation);
@@ -233,7 +234,7 @@ class Bench {
 
   void Lags() {
     for (const auto& clip : RealClips()) {
-      const TrackSequenceResult batch = TrackSequence(clip->input, options_.solve);
+      const TrackSequenceResult batch = FitClip(clip->input, options_.solve);
       const double error = EvaluateAist(batch.track, clip->truth, clip->view).Value("heldout_median_px");
       for (const std::string& lag : arguments_.List("lags")) {
         LiveTrackerOptions options = options_;

@@ -16,7 +16,7 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/motion/load_motion.h"
 #include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
 namespace bodyloom {
@@ -50,7 +50,7 @@ TrackSequenceResult TrackOf(const SynthClip& clip, const TrackSequenceOptions& o
   input.keypoints = &clip.keypoints;
   input.dense = &clip.dense;
   input.camera = clip.truth.camera;
-  return TrackSequence(input, options);
+  return FitClip(input, options);
 }
 
 double TrackErrorPx(const Track& track, const SynthClip& clip, int threads) {

@@ -19,8 +19,8 @@
 #include "bodyloom/render/photo_avatar/photo_person_builder.h"
 #include "bodyloom/render/texture/planar_image.h"
 #include "bodyloom/render/view/overlay.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/detection/clothes_parser.h"
-#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 
@@ -53,7 +53,7 @@ FittedPhoto FitPhoto(const TrackRequest& fit, const std::string& path, const Pip
   TrackSequenceOptions options = request.solve;
   options.camera_knowledge = scene.camera_knowledge;
   options.straight_knees_weight = StraightKneesWeight(request, seen.keypoints.convention);
-  TrackSequenceResult result = TrackSequence(input, options);
+  TrackSequenceResult result = FitClip(input, options);
   if (!result.summary.IsUsable() || !result.track.motion.HasPose(0)) {
     throw NothingToTrack(path + ": the person could not be fitted: " + result.summary.message);
   }

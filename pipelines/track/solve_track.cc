@@ -5,6 +5,7 @@
 
 #include "bodyloom/pipelines/track/track_inputs.h"
 #include "bodyloom/render/view/floor.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/live/track_live.h"
 
 namespace bodyloom {
@@ -38,7 +39,7 @@ TrackSequenceResult SolveTrack(const TrackRequest& request, const TrackInputs& i
     return !cancelled;
   };
   TrackSequenceResult result = request.live_lag ? TrackLive(inputs.ForTracker(), LiveOptionsOf(request, options))
-                                                : TrackSequence(inputs.ForTracker(), options);
+                                                : FitClip(inputs.ForTracker(), options);
   if (cancelled || (!stage.empty() && !callbacks.GoesOn(stage, share))) throw Cancelled();
   if (result.summary.IsUsable() && !result.track.world) result.track.world = AssumedWorld(result.track.joints);
   return result;

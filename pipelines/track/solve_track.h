@@ -8,7 +8,8 @@
 #include "bodyloom/pipelines/track/scene_inputs.h"
 #include "bodyloom/pipelines/track/track_inputs.h"
 #include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/problem/track_options.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -10,7 +10,9 @@
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/pipelines/track/clip_camera_path.h"
 #include "bodyloom/tracking/clip/initialiser_gain.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/track_plan.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

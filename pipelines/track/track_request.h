@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bodyloom/tracking/detection/frame_detector.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/problem/track_options.h"
 
 namespace bodyloom {
 

@@ -67,6 +67,10 @@ class CheckIncludes(unittest.TestCase):
         self.expect_allowed({"tracking/b.h": "", "data_tools/evaluation/a.cc": include("tracking/b.h"),
                              "data_tools/synthesis/a.cc": include("tracking/b.h")})
 
+    def test_the_face_of_tracking_knows_the_built_in_body(self):
+        self.expect_allowed({"data_tools/b.h": "", "tracking/a.cc": include("data_tools/b.h")})
+        self.expect_fault({"data_tools/b.h": "", "tracking/clip/a.cc": include("data_tools/b.h")}, "tracking/clip/a.cc:1")
+
     def test_detection_stands_above_data_tools_and_beside_tracking(self):
         self.expect_allowed({"data_tools/b.h": "", "tracking/detection/a.cc": include("data_tools/b.h")})
         self.expect_fault({"tracking/b.h": "", "tracking/detection/a.cc": include("tracking/b.h")},

@@ -135,7 +135,7 @@ TEST_P(BadNumbers, CamerasThatCannotBeAreRefused) {
     SCOPED_TRACE(number++);
     TrackSequenceInput input = InputOf(BuiltinBody(), Clip());
     fault(input.camera);
-    ExpectRefused([&] { (void)TrackSequence(input, OptionsOf(GetParam())); }, "camera");
+    ExpectRefused([&] { (void)FitClip(input, OptionsOf(GetParam())); }, "camera");
   }
 }
 
@@ -166,10 +166,10 @@ TEST_P(BadNumbers, ClocksThatCannotBeAreRefused) {
     TrackSequenceInput input = InputOf(BuiltinBody(), Clip());
     input.keypoints = &keypoints;
     input.dense = nullptr;
-    ExpectRefused([&] { (void)TrackSequence(input, OptionsOf(GetParam())); }, "track: ");
+    ExpectRefused([&] { (void)FitClip(input, OptionsOf(GetParam())); }, "track: ");
     input.keypoints = nullptr;
     input.dense = &dense;
-    ExpectRefused([&] { (void)TrackSequence(input, OptionsOf(GetParam())); }, "track: ");
+    ExpectRefused([&] { (void)FitClip(input, OptionsOf(GetParam())); }, "track: ");
   }
 }
 
@@ -194,7 +194,7 @@ TEST_P(BadNumbers, AnInitialiserThatIsNoNumberIsRefused) {
     TrackSequenceInput input = InputOf(BuiltinBody(), Clip());
     input.initialiser = &start;
     SCOPED_TRACE(what);
-    ExpectRefused([&] { (void)TrackSequence(input, OptionsOf(GetParam())); }, "initialiser");
+    ExpectRefused([&] { (void)FitClip(input, OptionsOf(GetParam())); }, "initialiser");
   }
 }
 

@@ -21,7 +21,7 @@ TEST_P(Endurance, MemoryDoesNotGrowOver1000Solves) {
   options.rendered_uv.weight = 0;
   options.num_threads = 2;
   const auto solve = [&](int times) {
-    for (int i = 0; i < times; ++i) ASSERT_TRUE(TrackSequence(input, options).summary.IsUsable());
+    for (int i = 0; i < times; ++i) ASSERT_TRUE(FitClip(input, options).summary.IsUsable());
   };
   solve(200);  // pools and caches are filled
   const size_t before = BytesHeld();

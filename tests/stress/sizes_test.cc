@@ -65,7 +65,7 @@ TEST_P(Sizes, ABodyInMillimetresIsRefusedInOneLine) {
     const BodyModel body = ScaledBody(BuiltinBody(), scale);
     TrackSequenceInput input = InputOf(body, clip);
     try {
-      (void)TrackSequence(input, OptionsOf(GetParam()));
+      (void)FitClip(input, OptionsOf(GetParam()));
       FAIL() << "a body " << 1.7 * scale << " m tall was accepted";
     } catch (const std::invalid_argument& error) {
       EXPECT_NE(std::string(error.what()).find("metres"), std::string::npos) << error.what();
@@ -80,7 +80,7 @@ TEST_P(Sizes, AnInitialiserInMillimetresIsRefusedInOneLine) {
   TrackSequenceInput input = InputOf(BuiltinBody(), clip);
   input.initialiser = &start;
   try {
-    (void)TrackSequence(input, OptionsOf(GetParam()));
+    (void)FitClip(input, OptionsOf(GetParam()));
     FAIL() << "a person kilometres away was accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("metres"), std::string::npos) << error.what();

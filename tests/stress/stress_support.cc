@@ -94,7 +94,7 @@ void ExpectSound(const TrackSequenceResult& result, int frames) {
 }
 
 TrackSequenceResult Fit(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
-  TrackSequenceResult result = TrackSequence(input, options);
+  TrackSequenceResult result = FitClip(input, options);
   ExpectSound(result, input.keypoints != nullptr ? input.keypoints->num_frames() : input.dense->num_frames());
   return result;
 }

@@ -14,12 +14,12 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/clip/initialiser_gain.h"
 #include "bodyloom/tracking/lifter/given_landmarks.h"
 #include "bodyloom/tracking/lifter/lift_keypoints.h"
 #include "bodyloom/tracking/lifter/lifter_input.h"
 #include "bodyloom/tracking/live/track_live.h"
-#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 namespace {
@@ -75,11 +75,11 @@ void Lose(int begin, int end, Motion* motion) {
 }
 
 TEST(Initialiser, FramesThatItLacksAreFilledAndFitted) {
-  const TrackSequenceResult all = TrackSequence(InputFrom(Clip().initialiser), Known());
+  const TrackSequenceResult all = FitClip(InputFrom(Clip().initialiser), Known());
   Motion gaps = Clip().initialiser;
   Lose(0, 4, &gaps);
   Lose(17, 25, &gaps);
-  const TrackSequenceResult some = TrackSequence(InputFrom(gaps), Known());
+  const TrackSequenceResult some = FitClip(InputFrom(gaps), Known());
   ASSERT_TRUE(some.summary.IsUsable()) << some.summary.message;
   EXPECT_TRUE(some.track.motion.poses.allFinite());
   EXPECT_EQ(some.summary.frames_by_status.at("tracked"), kFrames);
@@ -94,15 +94,15 @@ TEST(Initialiser, FramesThatItLacksAreFilledAndFitted) {
 TEST(Initialiser, RefusesHalfAFrameAndNoFrame) {
   Motion broken = Clip().initialiser;
   broken.poses(3, 7) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(TrackSequence(InputFrom(broken), Known()), std::invalid_argument);
+  EXPECT_THROW(FitClip(InputFrom(broken), Known()), std::invalid_argument);
   Motion nothing = Clip().initialiser;
   Lose(0, kFrames, &nothing);
-  EXPECT_THROW(TrackSequence(InputFrom(nothing), Known()), std::invalid_argument);
+  EXPECT_THROW(FitClip(InputFrom(nothing), Known()), std::invalid_argument);
 }
 
 // The lifter does not start, and is asked for the vertical and the feet alone.
 TEST(Initialiser, TheGroundIsLookedForAllTheSame) {
-  const TrackSequenceResult with = TrackSequence(InputFrom(Clip().initialiser), Known());
+  const TrackSequenceResult with = FitClip(InputFrom(Clip().initialiser), Known());
   EXPECT_FALSE(Ran(with.summary, "lifter"));
   EXPECT_TRUE(Ran(with.summary, "vertical"));
   EXPECT_TRUE(Ran(with.summary, "ground"));
@@ -110,7 +110,7 @@ TEST(Initialiser, TheGroundIsLookedForAllTheSame) {
   EXPECT_LT(std::acos(std::clamp(with.summary.ground.up.dot(Clip().up_in_camera), -1.0, 1.0)) * 180 / M_PI, 10);
   TrackSequenceOptions off = Known();
   off.ground = GroundOptions::Off();
-  EXPECT_FALSE(TrackSequence(InputFrom(Clip().initialiser), off).summary.ground.has_up);
+  EXPECT_FALSE(FitClip(InputFrom(Clip().initialiser), off).summary.ground.has_up);
 }
 
 TEST(InitialiserGain, CountsWhatTheFitChanged) {
@@ -145,7 +145,7 @@ TEST(InitialiserGain, CountsWhatTheFitChanged) {
 }
 
 TEST(InitialiserGain, AFitIsNearerToTheImageThanItsStart) {
-  const TrackSequenceResult result = TrackSequence(InputFrom(Clip().initialiser), Known());
+  const TrackSequenceResult result = FitClip(InputFrom(Clip().initialiser), Known());
   const InitialiserGain gain =
       GainOverInitialiser(BuiltinBody(), &Clip().keypoints, Clip().initialiser, Clip().truth.camera, result.track);
   EXPECT_EQ(gain.frames, kFrames);
@@ -172,7 +172,7 @@ TEST(GivenLandmarks, TakeTheLiftersPlace) {
   const Motion none;
   TrackSequenceInput input = InputFrom(none);
   input.initialiser = nullptr;
-  const TrackSequenceResult lifted = TrackSequence(input, Known());
+  const TrackSequenceResult lifted = FitClip(input, Known());
   std::vector<LiftedFrame> frames =
       LiftKeypoints(Clip().keypoints, Clip().truth.camera, true, std::vector<char>(kFrames, 0), BuiltinLifter(), {});
   std::vector<MatrixX3d> given = TrueLandmarks();
@@ -184,7 +184,7 @@ TEST(GivenLandmarks, TakeTheLiftersPlace) {
   EXPECT_EQ(frames[8].up, up) << "the vertical stays the lifter's";
   EXPECT_EQ(frames[8].limbs[2].size(), 1U);
   input.lifted = &frames;
-  const TrackSequenceResult result = TrackSequence(input, Known());
+  const TrackSequenceResult result = FitClip(input, Known());
   ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
   EXPECT_LT(JointErrorMm(result.track), 0.8 * JointErrorMm(lifted.track));
   const InitialiserGain gain =

@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 namespace {
@@ -36,7 +36,7 @@ TrackSequenceResult TrackWithLifter(const KeypointSequence& keypoints, const Cam
   options.camera_knowledge = knowledge;
   options.num_threads = threads;
   options.ground = ground;
-  return TrackSequence(input, options);
+  return FitClip(input, options);
 }
 
 double PaMpjpe(const TrackSequenceResult& result, const SynthClip& clip) {
@@ -90,7 +90,7 @@ TrackSequenceResult TrackDenseAlone(const SynthClip& clip, CameraKnowledge knowl
   TrackSequenceOptions options;
   options.camera_knowledge = knowledge;
   options.num_threads = 2;
-  return TrackSequence(input, options);
+  return FitClip(input, options);
 }
 
 TEST(LiftedTrack, ReadsJointsAmongDenseKeypointsWhereThereAreNoOthers) {

@@ -11,9 +11,9 @@
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/live/track_live.h"
 #include "bodyloom/tracking/people/track_people.h"
-#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 namespace {
@@ -58,8 +58,8 @@ class MovingTrack : public ::testing::Test {
 const SynthClip* MovingTrack::clip_ = nullptr;
 
 TEST_F(MovingTrack, TheWorldIsRightWithThePathAndWrongWithout) {
-  const TrackSequenceResult with = TrackSequence(Input(&path()), Options());
-  const TrackSequenceResult without = TrackSequence(Input(nullptr), Options());
+  const TrackSequenceResult with = FitClip(Input(&path()), Options());
+  const TrackSequenceResult without = FitClip(Input(nullptr), Options());
   ASSERT_TRUE(with.summary.IsUsable() && without.summary.IsUsable());
   EXPECT_EQ(with.track.camera_from_scene.size(), path().size());
   EXPECT_TRUE(with.summary.camera_path.moves);
@@ -73,7 +73,7 @@ TEST_F(MovingTrack, TheWorldIsRightWithThePathAndWrongWithout) {
 
 TEST_F(MovingTrack, ALengthIsFoundFromStandingFeet) {
   const std::vector<CameraPose> unit = ScaledPath(path(), 1 / 4.0);
-  const TrackSequenceResult result = TrackSequence(Input(&unit, 0), Options());
+  const TrackSequenceResult result = FitClip(Input(&unit, 0), Options());
   const CameraPathSummary& found = result.summary.camera_path;
   ASSERT_GT(found.scale_m, 0) << found.why;
   EXPECT_TRUE(found.estimated);
@@ -86,8 +86,8 @@ TEST_F(MovingTrack, ALengthIsFoundFromStandingFeet) {
 
 TEST_F(MovingTrack, APathThatStandsStillChangesNothing) {
   const std::vector<CameraPose> still(path().size());
-  const TrackSequenceResult moving = TrackSequence(Input(&still), Options());
-  const TrackSequenceResult none = TrackSequence(Input(nullptr), Options());
+  const TrackSequenceResult moving = FitClip(Input(&still), Options());
+  const TrackSequenceResult none = FitClip(Input(nullptr), Options());
   // The same problem by other sums: equal but for rounding, which the stages' tolerances stretch.
   EXPECT_LT((moving.track.motion.trans - none.track.motion.trans).cwiseAbs().maxCoeff(), 1e-3);
 }
@@ -96,9 +96,9 @@ TEST_F(MovingTrack, BothEnginesAgree) {
   TrackSequenceOptions options = Options();
   options.function_tolerance = 1e-9;
   options.max_iterations = options.max_fine_iterations = 200;
-  const TrackSequenceResult chain = TrackSequence(Input(&path()), options);
+  const TrackSequenceResult chain = FitClip(Input(&path()), options);
   options.solver = SequenceSolver::kCeres;
-  const TrackSequenceResult ceres = TrackSequence(Input(&path()), options);
+  const TrackSequenceResult ceres = FitClip(Input(&path()), options);
   EXPECT_NEAR(chain.summary.final_cost, ceres.summary.final_cost, 1e-3 * ceres.summary.final_cost);
   EXPECT_LT((chain.track.motion.trans - ceres.track.motion.trans).cwiseAbs().maxCoeff(), 0.02);
 }
@@ -106,13 +106,13 @@ TEST_F(MovingTrack, BothEnginesAgree) {
 TEST_F(MovingTrack, RefusesWhatCannotMove) {
   TrackSequenceOptions weak = Options();
   weak.camera_knowledge = CameraKnowledge::kWeak;
-  EXPECT_THROW(TrackSequence(Input(&path()), weak), std::invalid_argument);
+  EXPECT_THROW(FitClip(Input(&path()), weak), std::invalid_argument);
   const std::vector<CameraPose> few(path().begin(), path().begin() + 5);
-  EXPECT_THROW(TrackSequence(Input(&few), Options()), std::invalid_argument);
+  EXPECT_THROW(FitClip(Input(&few), Options()), std::invalid_argument);
   std::vector<CameraPose> bent = path();
   bent[3].camera_from_world_rotation *= 1.1;
-  EXPECT_THROW(TrackSequence(Input(&bent), Options()), std::invalid_argument);
-  EXPECT_THROW(TrackSequence(Input(&path(), -1), Options()), std::invalid_argument);
+  EXPECT_THROW(FitClip(Input(&bent), Options()), std::invalid_argument);
+  EXPECT_THROW(FitClip(Input(&path(), -1), Options()), std::invalid_argument);
   EXPECT_THROW(TrackLive(Input(&path()), {}), std::invalid_argument);
   EXPECT_THROW(TrackPeople({Input(&path()), Input(nullptr)}, Options()), std::invalid_argument);
 }

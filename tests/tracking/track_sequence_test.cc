@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tracker end to end on synthetic clips with known truth.
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TrackSequenceResult TrackClip(const SynthClip& clip, CameraKnowledge knowledge, 
   TrackSequenceOptions options;
   options.camera_knowledge = knowledge;
   options.num_threads = threads;
-  return TrackSequence(input, options);
+  return FitClip(input, options);
 }
 
 double PaMpjpe(const TrackSequenceResult& result, const SynthClip& clip) {
@@ -103,7 +103,7 @@ TEST(TrackSequence, ContradictionsAreNamed) {
   }
   TrackSequenceInput nothing;
   nothing.body = &BuiltinBody();
-  EXPECT_THROW((void)TrackSequence(nothing, TrackSequenceOptions()), std::invalid_argument);
+  EXPECT_THROW((void)FitClip(nothing, TrackSequenceOptions()), std::invalid_argument);
 }
 
 }  // namespace

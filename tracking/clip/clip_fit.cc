@@ -388,4 +388,17 @@ std::vector<Smoothness> FitSmoothness(const SequenceProblem& problem, const Smoo
   return fitted;
 }
 
+TrackSequenceResult FitClip(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  CheckInput(input, options);
+  TrackSequenceResult result;
+  ClipFit fit(input, options, &result.summary);
+  if (!fit.FindStart()) return result;
+  fit.Observe();
+  fit.FitCoarseFrames();
+  fit.FitAllFrames();
+  fit.FinishWithCeres();
+  fit.Finish(&result);
+  return result;
+}
+
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fit of a clip, one run of TrackSequence(): the clip's problem with all that its terms point to, and the steps
+/// The fit of a clip, one run of FitClip(): the clip's problem with all that its terms point to, and the steps
 /// that solve it.
 #pragma once
 
@@ -88,6 +88,11 @@ class ClipFit {
   Stages stages_{};
   std::optional<StageRunner> runner_;
 };
+
+/// Fits the body to a clip with what the input names and nothing else: without a prior and a lifter there are joint
+/// limits and joint hypotheses (TrackSequence() fills in the built-in ones). Throws std::invalid_argument when the
+/// input contradicts itself; a clip in which nothing can be estimated gives status kFailure with a message.
+TrackSequenceResult FitClip(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
 // The motion level of a clip, and the smoothness that suits it.
 //

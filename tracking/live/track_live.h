@@ -3,7 +3,8 @@
 #pragma once
 
 #include "bodyloom/tracking/live/live_tracker.h"
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/problem/track_input.h"
+#include "bodyloom/tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

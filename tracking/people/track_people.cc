@@ -7,10 +7,10 @@
 
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/parallel.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/clip/uncertainty.h"
 #include "bodyloom/tracking/problem/stature.h"
 #include "bodyloom/tracking/room/shared_scene.h"
-#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 namespace {
@@ -55,7 +55,7 @@ class Fits {
         return !stopped_;
       };
     }
-    TrackSequenceResult result = TrackSequence(input, options);
+    TrackSequenceResult result = FitClip(input, options);
     ++done_;
     return result;
   }

@@ -6,7 +6,6 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/pipelines/with_builtins.h"
 #include "bodyloom/render/uv_maps/descriptor_frames.h"
 #include "bodyloom/tracking/track_sequence.h"
 
@@ -16,7 +15,7 @@ int main() {
   bodyloom::TrackSequenceInput input;
   input.keypoints = &clip.keypoints;
   input.camera = clip.truth.camera;
-  const auto [track, summary] = bodyloom::TrackSequence(bodyloom::WithBuiltins(input), {});
+  const auto [track, summary] = bodyloom::TrackSequence(input);
   bodyloom::DescriptorFrames frames(body, track);
   std::vector<float> planes(frames.frame_size());
   frames.Planes(5, planes);

@@ -15,9 +15,9 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/geometry/math/rotation.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/problem/sequence_problem.h"
 #include "bodyloom/tracking/problem/stature.h"
-#include "bodyloom/tracking/track_sequence.h"
 
 namespace bodyloom {
 namespace {
@@ -150,7 +150,7 @@ TEST(TrackPeople, FeetOnOneFloorTellWhoIsTaller) {
   EXPECT_NEAR(StatureOf(known.people[1].track), kSmall * AssumedStature(mean), 0.05 * AssumedStature(mean));
   EXPECT_NEAR(DepthOf(known.people[0].track), tall.depth_m, 0.04 * tall.depth_m);
   EXPECT_NEAR(DepthOf(known.people[1].track), small.depth_m, 0.05 * small.depth_m);
-  EXPECT_GT(DepthOf(TrackSequence(inputs[1], options).track), 1.1 * small.depth_m) << "alone, of average stature";
+  EXPECT_GT(DepthOf(FitClip(inputs[1], options).track), 1.1 * small.depth_m) << "alone, of average stature";
 }
 
 TEST(TrackPeople, FeetAreComparedAtOneFocalLength) {
@@ -192,10 +192,10 @@ TEST(TrackSequence, DistanceFollowsTheStatureThatIsGiven) {
   TrackSequenceOptions options = Options();
   options.camera_knowledge = CameraKnowledge::kKnown;
   input.camera = clip.truth.camera;
-  const TrackSequenceResult mean = TrackSequence(input, options);
+  const TrackSequenceResult mean = FitClip(input, options);
   EXPECT_EQ(mean.summary.stature_m, 0);
   input.stature_m = 0.85 * AssumedStature(input);
-  const TrackSequenceResult smaller = TrackSequence(input, options);
+  const TrackSequenceResult smaller = FitClip(input, options);
   EXPECT_NEAR(StatureOf(smaller.track), input.stature_m, 0.01);
   EXPECT_EQ(smaller.summary.stature_m, input.stature_m);
   const double ratio = smaller.track.motion.trans.col(2).mean() / mean.track.motion.trans.col(2).mean();
@@ -203,16 +203,16 @@ TEST(TrackSequence, DistanceFollowsTheStatureThatIsGiven) {
   EXPECT_LT(smaller.summary.reprojection_median_px, 1.2 * mean.summary.reprojection_median_px);
   for (const double impossible : {-1.7, 0.3, 170.0, std::nan("")}) {
     input.stature_m = impossible;
-    EXPECT_THROW(TrackSequence(input, options), std::invalid_argument) << impossible;
+    EXPECT_THROW(FitClip(input, options), std::invalid_argument) << impossible;
   }
   input.stature_m = 1.7;
   options.estimate_shape = false;
-  EXPECT_THROW(TrackSequence(input, options), std::invalid_argument);
+  EXPECT_THROW(FitClip(input, options), std::invalid_argument);
 }
 
 TEST(TrackPeople, OnePersonIsTrackedAsAlone) {
   const SynthClip clip = Clip(1);
-  const TrackSequenceResult alone = TrackSequence(InputOf(clip), Options());
+  const TrackSequenceResult alone = FitClip(InputOf(clip), Options());
   const TrackPeopleResult together = TrackPeople({InputOf(clip)}, Options());
   ASSERT_EQ(together.people.size(), 1U);
   EXPECT_EQ(together.people[0].track.motion.poses, alone.track.motion.poses);
@@ -223,8 +223,8 @@ TEST(TrackPeople, OnePersonIsTrackedAsAlone) {
 
 TEST(TrackPeople, HaveOneFocalLengthAndOneVertical) {
   const SynthClip a = Clip(1), b = Clip(2);
-  const double f_a = TrackSequence(InputOf(a), Options()).track.camera.fx;
-  const double f_b = TrackSequence(InputOf(b), Options()).track.camera.fx;
+  const double f_a = FitClip(InputOf(a), Options()).track.camera.fx;
+  const double f_b = FitClip(InputOf(b), Options()).track.camera.fx;
   ASSERT_NE(f_a, f_b);
   std::vector<double> fractions;
   TrackSequenceOptions options = Options();

@@ -13,8 +13,8 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/clip/uncertainty.h"
-#include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/sequence_scene.h"
 
 namespace bodyloom {
@@ -85,7 +85,7 @@ TrackSequenceResult TrackUnknownFocal(const SynthClip& clip, const std::optional
   TrackSequenceOptions options;
   options.camera_knowledge = CameraKnowledge::kUnknownFocal;
   options.num_threads = 2;
-  return TrackSequence(input, options);
+  return FitClip(input, options);
 }
 
 TEST(FocalLength, ATrackHasWhatItsDetectionsAndThePriorSayTogether) {

@@ -20,12 +20,12 @@
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/scene/camera_path.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/live/track_live.h"
 #include "bodyloom/tracking/problem/moving_camera.h"
 #include "bodyloom/tracking/problem/user_cost.h"
 #include "bodyloom/tracking/solvers/chain/chain_problem.h"
 #include "bodyloom/tracking/solvers/solve_sequence.h"
-#include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
 
@@ -206,7 +206,7 @@ TrackSequenceResult TrackWith(const SynthClip& clip, SequenceSolver solver, cons
   TrackSequenceOptions options;
   options.solver = solver;
   options.user_terms = terms;
-  return TrackSequence(input, options);
+  return FitClip(input, options);
 }
 
 TEST(UserTerm, DerivativesMatchDifferencesThroughTheProblem) {

@@ -18,12 +18,12 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/scene/camera_path.h"
 #include "bodyloom/tracking/build_ceres_problem.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 #include "bodyloom/tracking/problem/moving_camera.h"
 #include "bodyloom/tracking/solvers/chain/chain_inverse.h"
 #include "bodyloom/tracking/solvers/chain/chain_problem.h"
 #include "bodyloom/tracking/solvers/solve_sequence.h"
 #include "bodyloom/tracking/solvers/term_costs.h"
-#include "bodyloom/tracking/track_sequence.h"
 #include "tests/support/sequence_scene.h"
 
 namespace bodyloom {
@@ -230,7 +230,7 @@ TrackSequenceResult TrackDemo(const SynthClip& clip, SequenceSolver solver, int 
   TrackSequenceOptions options;
   options.solver = solver;
   options.num_threads = threads;
-  return TrackSequence(input, options);
+  return FitClip(input, options);
 }
 
 TEST(CeresFinish, IsTheDefaultAndReportsItself) {
@@ -270,7 +270,7 @@ TEST(CeresFinish, TheProblemIsWhatTheTrackerSolves) {
   input.keypoints = &clip.keypoints;
   input.prior = &BuiltinPosePrior();
   input.camera = clip.truth.camera;
-  const TrackSequenceResult track = TrackSequence(input, {});
+  const TrackSequenceResult track = FitClip(input, {});
   const auto problem = BuildCeresProblem(input);
   ASSERT_NE(problem->blocks(), nullptr);
   EXPECT_NEAR(SumOf(problem->blocks()->CostByTerm()), track.summary.ceres.initial_cost,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tracker with rendered UV, silhouettes and part labels: from input to summary.
-#include "bodyloom/tracking/track_sequence.h"
+#include "bodyloom/tracking/clip/clip_fit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -89,7 +89,7 @@ TEST(ImageTerms, RenderedUvTracksAndReportsItself) {
   TrackSequenceOptions options;
   options.num_threads = 2;
   options.rendered_uv.weight = 1;
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
   EXPECT_TRUE(Runs(result.summary.plan, "rendered UV (L_r)"));
   const TermSummary& term = Term(result.summary, "rendered UV");
@@ -101,7 +101,7 @@ TEST(ImageTerms, RenderedUvTracksAndReportsItself) {
   EXPECT_NE(result.summary.BriefReport().find("rendered UV"), std::string::npos);
 
   options.rendered_uv.weight = 0;
-  const TrackSequenceResult without = TrackSequence(input, options);
+  const TrackSequenceResult without = FitClip(input, options);
   EXPECT_FALSE(Runs(without.summary.plan, "rendered UV (L_r)"));
   EXPECT_THROW((void)Term(without.summary, "rendered UV"), std::runtime_error);
   EXPECT_NE(without.track.motion.poses, result.track.motion.poses);
@@ -132,7 +132,7 @@ TEST(ImageTerms, PartLabelsAloneTrackFromAStart) {
   input.part_labels = &labels;
   TrackSequenceOptions options;
   options.num_threads = 2;
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
   EXPECT_EQ(result.summary.frames_by_status.at("tracked"), 8);
   EXPECT_GT(result.summary.num_observations, 8 * 100);
@@ -155,9 +155,9 @@ TEST(ImageTerms, SameBytesForAnyNumberOfThreads) {
   options.rendered_uv.weight = 1;
   options.max_iterations = 5;
   options.num_threads = 1;
-  const TrackSequenceResult one = TrackSequence(input, options);
+  const TrackSequenceResult one = FitClip(input, options);
   options.num_threads = 4;
-  const TrackSequenceResult four = TrackSequence(input, options);
+  const TrackSequenceResult four = FitClip(input, options);
   ASSERT_TRUE(one.summary.IsUsable());
   EXPECT_EQ(one.track.motion.poses, four.track.motion.poses);
   EXPECT_EQ(one.track.motion.trans, four.track.motion.trans);
@@ -176,7 +176,7 @@ TEST(ImageTerms, FramesWithoutLabelsAreCarried) {
   TrackSequenceOptions options;
   options.num_threads = 2;
   options.part_labels.rounds = 2;
-  const TrackSequenceResult result = TrackSequence(input, options);
+  const TrackSequenceResult result = FitClip(input, options);
   ASSERT_TRUE(result.summary.IsUsable());
   EXPECT_EQ(result.summary.frames_by_status.at("tracked"), 4);
   EXPECT_EQ(result.track.frame_status[2], FrameStatus::kInterpolated);
@@ -196,7 +196,7 @@ TEST(ImageTerms, ContradictionsAreNamed) {
     TrackSequenceOptions options;
     spoil(&labels, &input, &options);
     try {
-      (void)TrackSequence(input, options);
+      (void)FitClip(input, options);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/with_builtins.h"
+#include "bodyloom/tracking/builtin_models.h"
 
 #include <gtest/gtest.h>
 

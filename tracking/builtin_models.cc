@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/with_builtins.h"
+#include "bodyloom/tracking/builtin_models.h"
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/data_tools/learned/lifter_weights_io.h"
@@ -9,21 +9,21 @@ namespace bodyloom {
 namespace {
 
 template <typename Input>
-void AddBuiltins(bool needs_lifter, Input* input) {
+void AddBuiltins(bool needs_prior, bool needs_lifter, Input* input) {
   if (input->body == nullptr) input->body = &BuiltinBody();
-  if (input->prior == nullptr) input->prior = &BuiltinPosePrior();
+  if (input->prior == nullptr && needs_prior) input->prior = &BuiltinPosePrior();
   if (input->lifter == nullptr && needs_lifter) input->lifter = &BuiltinLifter();
 }
 
 }  // namespace
 
-TrackSequenceInput WithBuiltins(TrackSequenceInput input) {
-  AddBuiltins(input.lifted == nullptr, &input);
+TrackSequenceInput WithBuiltins(TrackSequenceInput input, const TrackSequenceOptions& options) {
+  AddBuiltins(options.prior_weight != 0, options.lifter_weight != 0 && input.lifted == nullptr, &input);
   return input;
 }
 
 LiveTrackerInput WithBuiltins(LiveTrackerInput input) {
-  AddBuiltins(true, &input);
+  AddBuiltins(true, true, &input);
   return input;
 }
 
