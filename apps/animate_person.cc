@@ -44,7 +44,7 @@ void RunAnimatePerson(const AnimatePersonRequest& request) {
 void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string> arguments) {
   CLI::App* verb = animate.add_subcommand("person", "Moves a person from a photo or a few; nothing is trained");
   auto request = std::make_shared<AnimatePersonRequest>();
-  TrackRequest& fit = request->photos.fit;
+  PhotoFitSettings& fit = request->photos.fit;
   verb->add_option("--image", request->photos.images, "Photos of the person; the first gives shape and clothes");
   verb->add_option("--person", request->person, "A person who was kept (--keep), in place of photos")->type_name("DIR");
   verb->add_option("--garment-from", request->garment_from,

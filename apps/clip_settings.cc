@@ -63,7 +63,7 @@ void Parse(CLI::App* app, const ManifestClip& listed, const std::set<std::string
   }
 }
 
-void UseThreads(int num_threads, const ClipSettings& settings, TrackRequest* track) {
+void UseThreads(int num_threads, const ClipSettings& settings, TrackSettings* track) {
   if (!settings.contains("threads")) track->solve.num_threads = num_threads;
   track->detector.blazepose.num_threads = track->solve.num_threads;
 }
@@ -73,9 +73,9 @@ void UseThreads(int num_threads, const ClipSettings& settings, TrackRequest* tra
 std::function<ClipSettings()> AddClipOptions(CLI::App& verb) {
   const std::vector<CLI::Option*> before = verb.get_options();
   auto unused = std::make_shared<TrackPeopleClipRequest>();
-  TrackRequest& track = unused->track;
+  TrackSettings& track = unused->track;
   verb.add_flag("--overlay", unused->overlay, "draw overlay.mp4")->group(kAllClips);
-  verb.add_flag("--side-view", track.side_view, "the overlay also shows the body from its side")->group(kAllClips);
+  verb.add_flag("--side-view", unused->side_view, "the overlay also shows the body from its side")->group(kAllClips);
   verb.add_flag("--report", unused->report, "write report.html: video, bodies in 3D and a timeline in one page")
       ->group(kAllClips);
   verb.add_option("--people", unused->max_people, "of raw videos: at most so many (0: everybody)")

@@ -8,7 +8,7 @@
 namespace bodyloom {
 
 void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
-  TrackRequest& track = request->track;
+  TrackSettings& track = request->track;
   app.add_option("VIDEO,--video", track.video, "the video, or a folder of images")->required()->type_name("PATH");
   app.add_option("--people", request->max_people, "at most so many: the largest and longest in view (0: everybody)")
       ->capture_default_str()
@@ -27,7 +27,7 @@ void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
   app.add_flag(
       "--coarse-masks", request->coarse_masks,
       "masks as the network gives them: do not cut them from what stands behind people when the camera is still");
-  app.add_flag("--side-view", track.side_view, "the overlay also shows everybody from their side");
+  app.add_flag("--side-view", request->side_view, "the overlay also shows everybody from their side");
   AddDetectionOptions(app, &track, "Detection");
   AddCalibrationOptions(app, &track);
   AddLearnedOptions(app, &track);

@@ -37,8 +37,8 @@ void AddImageSize(CLI::App& app, TrackRequest* request) {
 
 }  // namespace
 
-void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string& detect) {
-  TrackRequest& c = *request;
+void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& detect) {
+  TrackSettings& c = *request;
   AddDetectorOptions(app, &c.detector, &c.detect_rate, detect);
   app.add_flag_callback(
          "--no-mask", [&c] { c.use_mask = false; }, "do not use the person's mask")
@@ -51,8 +51,8 @@ void AddDetectionOptions(CLI::App& app, TrackRequest* request, const std::string
       ->check(Quiet(CLI::NonNegativeNumber));
 }
 
-void AddCalibrationOptions(CLI::App& app, TrackRequest* request) {
-  TrackRequest& c = *request;
+void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
+  TrackSettings& c = *request;
   app.add_option(
          "--cameras", c.cameras,
          "calibration: an AIST++ camera folder or setting, a Pose2Sim calib_refined.json, or this project's JSON")
@@ -89,8 +89,8 @@ void AddCalibrationOptions(CLI::App& app, TrackRequest* request) {
       ->check(Quiet(CLI::PositiveNumber));
 }
 
-void AddLearnedOptions(CLI::App& app, TrackRequest* request) {
-  TrackRequest& c = *request;
+void AddLearnedOptions(CLI::App& app, TrackSettings* request) {
+  TrackSettings& c = *request;
   app.add_option("--body", c.body, "body model: SMPL, SMPL-H or SMPL-X .pkl or .npz (default: the built-in body)")
       ->group(kKnown)
       ->type_name("FILE");
@@ -107,7 +107,7 @@ void AddLearnedOptions(CLI::App& app, TrackRequest* request) {
       ->type_name("FILE");
 }
 
-void AddSolveOptions(CLI::App& app, TrackRequest* request) {
+void AddSolveOptions(CLI::App& app, TrackSettings* request) {
   TrackSequenceOptions& s = request->solve;
   app.add_option_function<std::string>(
          "--solver", [&s](const std::string& word) { s.solver = SequenceSolverFromString(word); },

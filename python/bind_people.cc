@@ -116,7 +116,7 @@ void BindPeople(py::module_& module) {
         request.max_people = people, request.person = person, request.least_seconds = least_seconds;
         request.overlay = overlay, request.report = report;
         request.masks = masks, request.coarse_masks = coarse_masks;
-        TrackRequest& track = request.track;
+        TrackSettings& track = request.track;
         track.video = video.string();
         track.fps = PositiveOr0(fps, "fps");
         track.min_confidence = min_confidence;
@@ -129,7 +129,7 @@ void BindPeople(py::module_& module) {
         track.detect_rate = PositiveOr0(detect_rate, "detect_rate");
         track.use_mask = mask;
         track.from_s = begin_s, track.to_s = end_s.value_or(-1);
-        track.side_view = side_view;
+        request.side_view = side_view;
         track.solve.solver = SequenceSolverFromString(solver);
         track.solve.num_threads = threads;
         track.solve.estimate_uncertainty = uncertainty;

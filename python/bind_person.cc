@@ -44,11 +44,11 @@ constexpr const char* kParseDoc =
     "rest and what is raised: as Person.from_photos().";
 
 /// What Person.from_photos() and parse_photo() take of how a photo is fitted.
-TrackRequest FitOf(int who, const std::optional<Path>& body, std::optional<double> focal_px,
-                   std::optional<double> stature_m, const std::optional<Path>& models) {
+PhotoFitSettings FitOf(int who, const std::optional<Path>& body, std::optional<double> focal_px,
+                       std::optional<double> stature_m, const std::optional<Path>& models) {
   BODYLOOM_CHECK(focal_px.value_or(1) > 0 && stature_m.value_or(1) > 0,
                  "focal_px, stature_m: expected numbers above 0");
-  TrackRequest fit;
+  PhotoFitSettings fit;
   fit.person = who;
   fit.body = TextOf(body);
   fit.focal_px = focal_px.value_or(0);

@@ -65,7 +65,7 @@ double PositiveOr0(const std::optional<double>& value, const char* name) {
   return value.value_or(0);
 }
 
-void TakeCamera(const std::optional<CameraArgument>& argument, TrackRequest* request, GivenInMemory* given) {
+void TakeCamera(const std::optional<CameraArgument>& argument, TrackSettings* request, GivenInMemory* given) {
   if (!argument) return;
   if (const auto* path = std::get_if<Path>(&*argument)) {
     request->cameras = path->string();
@@ -74,7 +74,7 @@ void TakeCamera(const std::optional<CameraArgument>& argument, TrackRequest* req
   }
 }
 
-void TakeBody(const std::optional<BodyArgument>& argument, TrackRequest* request, GivenInMemory* given) {
+void TakeBody(const std::optional<BodyArgument>& argument, TrackSettings* request, GivenInMemory* given) {
   if (!argument) return;
   if (const auto* path = std::get_if<Path>(&*argument)) {
     request->body = path->string();
@@ -83,7 +83,7 @@ void TakeBody(const std::optional<BodyArgument>& argument, TrackRequest* request
   }
 }
 
-std::shared_ptr<const BodyModel> BodyToKeep(const TrackRequest& request, GivenInMemory* given) {
+std::shared_ptr<const BodyModel> BodyToKeep(const TrackSettings& request, GivenInMemory* given) {
   if (given->body == nullptr && !request.body.empty()) given->body = BodyFrom(BodyArgument(Path(request.body)));
   return given->body;
 }

@@ -82,12 +82,12 @@ using CameraArgument = std::variant<Camera, Path>;
 double PositiveOr0(const std::optional<double>& value, const char* name);
 
 /// A file is named in the request, an object is given.
-void TakeCamera(const std::optional<CameraArgument>& argument, TrackRequest* request, GivenInMemory* given);
-void TakeBody(const std::optional<BodyArgument>& argument, TrackRequest* request, GivenInMemory* given);
+void TakeCamera(const std::optional<CameraArgument>& argument, TrackSettings* request, GivenInMemory* given);
+void TakeBody(const std::optional<BodyArgument>& argument, TrackSettings* request, GivenInMemory* given);
 
 /// The body in memory that a track is of, so that what is asked of it later finds it; the request's file is read, and
 /// given from then on. Null: the built-in one.
-std::shared_ptr<const BodyModel> BodyToKeep(const TrackRequest& request, GivenInMemory* given);
+std::shared_ptr<const BodyModel> BodyToKeep(const TrackSettings& request, GivenInMemory* given);
 
 /// What detects people: networks of BlazePose ("lite", "full", "heavy") or of the user's own.
 FrameDetectorOptions DetectorFrom(const std::string& detector, const std::optional<Path>& pose_model,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What most programs need of the library, in one header: bodies, cameras and tracks; detections and videos read; a clip
-/// tracked, offline and live, and its problem for Ceres; descriptors, overlays and files written. Networks
+/// What most programs need of the library, in one header: bodies, cameras and tracks; detections and videos read; a
+/// clip tracked, offline and live, and its problem for Ceres; descriptors, overlays and files written. Networks
 /// (bodyloom/neural/…) and whole jobs (bodyloom/pipelines/…) are included by themselves.
 #pragma once
 

@@ -9,6 +9,7 @@
 #include "bodyloom/data_tools/evaluation/ssim.h"
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/pipelines/report_text.h"
+#include "bodyloom/render/gaussian_avatar/avatar_image.h"
 
 namespace bodyloom {
 

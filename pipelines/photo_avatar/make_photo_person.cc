@@ -24,12 +24,11 @@
 
 namespace bodyloom {
 
-FittedPhoto FitPhoto(const TrackRequest& fit, const std::string& path, const PipelineCallbacks& callbacks,
+FittedPhoto FitPhoto(const PhotoFitSettings& fit, const std::string& path, const PipelineCallbacks& callbacks,
                      StageClock* clock, std::shared_ptr<const BodyModel>* body) {
-  TrackRequest request = fit;
+  PhotoFitSettings request = fit;
   request.video = path;
-  request.out = "-";  // nothing is written: the check wants to know where to
-  CheckTrackRequest(request);
+  CheckTrackSettings(request);
   FittedPhoto photo;
   photo.name = path;
   clock->Begin("read");

@@ -21,12 +21,15 @@
 
 namespace bodyloom {
 
-/// The person of the photo at `path`; `body` becomes what was fitted. `fit`: the body, the detector, the focal length,
-/// the person's height and how to solve; `person` is who of a photo, 0: the largest. Its video, observations and
-/// outputs are not used. `clock` times the stages "read", "detect" and "fit". Throws RequestError for a request that
-/// contradicts itself, NothingToTrack naming a photo in which nobody is found or could be fitted, std::runtime_error
-/// naming a file that cannot be used, Cancelled.
-FittedPhoto FitPhoto(const TrackRequest& fit, const std::string& path, const PipelineCallbacks& callbacks,
+/// The body, the detector, the focal length, the person's height and how to solve. The video is the photo.
+struct PhotoFitSettings : TrackSettings {
+  int person = 0;  ///< who of a photo; 0: the largest
+};
+
+/// The person of the photo at `path`; `body` becomes what was fitted. `clock` times the stages "read", "detect" and
+/// "fit". Throws RequestError for a request that contradicts itself, NothingToTrack naming a photo in which nobody is
+/// found or could be fitted, std::runtime_error naming a file that cannot be used, Cancelled.
+FittedPhoto FitPhoto(const PhotoFitSettings& fit, const std::string& path, const PipelineCallbacks& callbacks,
                      StageClock* clock, std::shared_ptr<const BodyModel>* body);
 
 // Photos of a person to a body and a texture (photo_person.h). Nothing is trained and no video is needed.
@@ -36,9 +39,7 @@ FittedPhoto FitPhoto(const TrackRequest& fit, const std::string& path, const Pip
 
 struct PhotoPersonRequest {
   std::vector<std::string> images;  ///< photos of the person, at least one
-  /// The body, the detector, the focal length, the person's height and how to solve; `person` is who of a photo, 0: the
-  /// largest. Its video, observations and outputs are not used.
-  TrackRequest fit;
+  PhotoFitSettings fit;
   int texture_size = 1024;    ///< texels a side, 64 to 8192
   bool loose_garment = true;  ///< look for a skirt, dress or coat
 };
@@ -68,7 +69,7 @@ struct PhotoParseRequest {
   std::string weights = kBuiltinParser;
   std::string out;      ///< the labels, .png: a label's number in all channels; empty: none
   std::string picture;  ///< the photo, tinted by label, .png or .jpg; empty: none
-  TrackRequest fit;     ///< as FitPhoto() takes it
+  PhotoFitSettings fit;
 };
 
 struct PhotoParseSummary {

@@ -16,6 +16,7 @@
 #include "bodyloom/geometry/cloth/body_with_garment.h"
 #include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
 #include "bodyloom/pipelines/report_json.h"
+#include "bodyloom/render/garment/person_cloth.h"
 
 namespace bodyloom {
 namespace {

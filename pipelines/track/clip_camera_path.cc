@@ -15,7 +15,7 @@ constexpr double kStandingStill = 0.3;
 
 }  // namespace
 
-std::vector<CameraPose> CamerasAt(const TrackRequest& request, const RecordedCameraPath& path,
+std::vector<CameraPose> CamerasAt(const TrackSettings& request, const RecordedCameraPath& path,
                                   std::span<const double> clip_seconds, std::span<const double> seconds,
                                   CameraPathReport* report) {
   if (request.from_s > 0 && !path.frames.empty() && request.camera_path_first < 0) {
@@ -39,7 +39,7 @@ std::vector<CameraPose> CamerasAt(const TrackRequest& request, const RecordedCam
   return sampled.camera_from_scene;
 }
 
-double CameraScaleOf(const TrackRequest& request, const RecordedCameraPath& path) {
+double CameraScaleOf(const SceneRequest& request, const RecordedCameraPath& path) {
   return request.camera_scale_m > 0 ? request.camera_scale_m : path.is_metric ? 1 : 0;
 }
 

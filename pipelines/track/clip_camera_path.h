@@ -25,12 +25,12 @@ struct CameraPathReport {
 
 /// camera_from_scene of each of the frames, which are at `clip_seconds` (the whole clip's), at `seconds`. Throws
 /// std::runtime_error naming the file when they are not on the path, or too far from what is known of it.
-std::vector<CameraPose> CamerasAt(const TrackRequest& request, const RecordedCameraPath& path,
+std::vector<CameraPose> CamerasAt(const TrackSettings& request, const RecordedCameraPath& path,
                                   std::span<const double> clip_seconds, std::span<const double> seconds,
                                   CameraPathReport* report);
 
 /// TrackSequenceInput::camera_scale_m: the request's, 1 for a path in metres, else 0.
-double CameraScaleOf(const TrackRequest& request, const RecordedCameraPath& path);
+double CameraScaleOf(const SceneRequest& request, const RecordedCameraPath& path);
 
 /// Two lines: how many poses, and the scale and how it was found; nothing for a camera that stands still.
 std::string ToText(const CameraPathReport& report, const CameraPathSummary& solved);

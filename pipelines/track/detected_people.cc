@@ -18,7 +18,7 @@ ClipFrames SpanOf(const PersonTrack& person) {
   return {person.detections.front().first, person.detections.back().first};
 }
 
-DetectPeopleRequest DetectionOf(const TrackRequest& request, int max_people) {
+DetectPeopleRequest DetectionOf(const TrackSettings& request, int max_people) {
   DetectPeopleRequest detect;
   detect.video = request.video;
   detect.span = {request.fps, request.from_s, request.to_s};
@@ -29,13 +29,13 @@ DetectPeopleRequest DetectionOf(const TrackRequest& request, int max_people) {
   return detect;
 }
 
-DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallbacks& callbacks, int max_people) {
+DetectedClip DetectForTracking(const TrackSettings& request, const PipelineCallbacks& callbacks, int max_people) {
   callbacks.Begin("detecting people");
   return DetectPeople(DetectionOf(request, max_people), callbacks);
 }
 
 DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, ClipFrames frames,
-                                    const TrackRequest& request, const SceneInputs& scene) {
+                                    const TrackSettings& request, const SceneInputs& scene) {
   // The camera has a size by now: that of its calibration, or the video's.
   const Camera& camera = scene.camera.camera;
   const Matrix2x3d map = VideoFromCameraPixels(scene.camera.video_px_from_camera_px, camera, clip.people.image_width,

@@ -28,16 +28,16 @@ ClipFrames WholeClip(const DetectedClip& clip);
 ClipFrames SpanOf(const PersonTrack& person);
 
 /// What the request's fields say of detection; at most `max_people` at a time (0: everybody).
-DetectPeopleRequest DetectionOf(const TrackRequest& request, int max_people = 0);
+DetectPeopleRequest DetectionOf(const TrackSettings& request, int max_people = 0);
 
 /// DetectPeople() by DetectionOf().
-DetectedClip DetectForTracking(const TrackRequest& request, const PipelineCallbacks& callbacks, int max_people = 0);
+DetectedClip DetectForTracking(const TrackSettings& request, const PipelineCallbacks& callbacks, int max_people = 0);
 
 /// The person's landmarks and mask in those frames; where it was not seen they are missing. Landmarks whose confidence
 /// is below request.min_confidence are missing too. Throws std::runtime_error when the scene's camera is for images of
 /// other proportions than the video's.
 DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, ClipFrames frames,
-                                    const TrackRequest& request, const SceneInputs& scene);
+                                    const TrackSettings& request, const SceneInputs& scene);
 
 // Observations made in a video's pixels, moved into those of the camera that its calibration describes.
 

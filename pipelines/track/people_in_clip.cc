@@ -76,7 +76,6 @@ void CheckTrackPeopleRequest(const TrackPeopleRequest& request) {
   if (request.track.camera == "weak") {
     throw RequestError("weak perspective puts nobody into a common space: use track for one person at a time");
   }
-  if (request.track.live_lag) throw RequestError("everybody together cannot be tracked live: use track --live");
 }
 
 PeopleInClip FindPeopleInClip(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks) {

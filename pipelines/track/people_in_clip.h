@@ -18,15 +18,13 @@
 namespace bodyloom {
 
 struct TrackPeopleRequest {
-  /// The video, its span, the detector, the camera, what else is known and how to solve; `side_view` is of the overlay.
-  /// Its `person`, its other observations and its outputs are not used.
-  TrackRequest track;
+  TrackSettings track;         ///< the video, its span, the detector, the camera, what else is known and how to solve
   int max_people = 0;          ///< at most so many: the largest and longest in view; 0: everybody
   std::optional<int> person;   ///< only this one, numbered as LinkPeople() does (0: the largest and longest in view)
   double least_seconds = 0.5;  ///< whoever is seen for less is left out; in short clips half of the clip
 };
 
-/// Throws RequestError for a request that contradicts itself. `track` of it is checked by CheckTrackRequest().
+/// Throws RequestError for a request that contradicts itself. `track` of it is checked by CheckTrackSettings().
 void CheckTrackPeopleRequest(const TrackPeopleRequest& request);
 
 /// Of the video, before anybody is tracked.

@@ -8,6 +8,7 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/data_tools/video/video_reader.h"
 #include "bodyloom/geometry/base/check.h"
+#include "bodyloom/pipelines/files.h"
 
 namespace bodyloom {
 namespace {
@@ -17,12 +18,12 @@ namespace {
 constexpr double kLensLogSigma = 0.05, kSteadiedLogSigma = 0.1;
 
 /// Camera file, focal length and image size as far as the request gives them.
-NamedCamera CameraFromRequest(const TrackRequest& request) {
+NamedCamera CameraFromRequest(const SceneRequest& request, const std::string& detections) {
   NamedCamera camera;
   camera.camera.width = request.image_width;
   camera.camera.height = request.image_height;
   if (!request.cameras.empty()) {
-    camera = FindCamera(LoadCameras(request.cameras, request.detections), request.view, request.cameras);
+    camera = FindCamera(LoadCameras(request.cameras, detections), request.view, request.cameras);
     if (request.image_width > 0 &&
         (camera.camera.width != request.image_width || camera.camera.height != request.image_height)) {
       throw std::runtime_error(Concatenate(request.cameras, ": camera ", camera.name, " is for images of ",
@@ -34,7 +35,7 @@ NamedCamera CameraFromRequest(const TrackRequest& request) {
 }
 
 /// The path of a camera that moves, and its intrinsics where nothing else gives any.
-void UseCameraPath(const TrackRequest& request, SceneInputs* inputs) {
+void UseCameraPath(const SceneRequest& request, SceneInputs* inputs) {
   if (!request.camera_path.empty()) inputs->camera_path = LoadCameraPath(request.camera_path);
   const bool given = !request.cameras.empty() || request.focal_px > 0 || request.camera == "unknown-focal";
   const bool uses = inputs->camera_path && inputs->camera_path->camera && !given;
@@ -79,18 +80,36 @@ TrackSequenceInput SceneInputs::ForTracker() const {
   return input;
 }
 
-void UseFocal(const TrackRequest& request, Camera* camera) {
+void UseFocal(const SceneRequest& request, Camera* camera) {
   if (request.focal_px > 0) *camera = MakePinhole(camera->width, camera->height, request.focal_px);
 }
 
-SceneInputs LoadSceneInputs(const TrackRequest& request, const GivenInMemory& given) {
+std::vector<std::string> RequireFiles(const SceneRequest& request, const FrameDetectorOptions& detector) {
+  const std::vector<std::pair<std::string, std::string>> named_inputs = {
+      {request.cameras, "cameras"},
+      {request.camera_path, "camera path"},
+      {request.video, "video"},
+      {request.body, "body model"},
+      {request.prior == "none" ? "" : request.prior, "pose prior"},
+      {request.lifter == "none" ? "" : request.lifter, "lifter"}};
+  RequirePoseModels(detector);
+  std::vector<std::string> inputs = {detector.pose_model, detector.box_model};
+  for (const auto& [path, what] : named_inputs) {
+    RequireReadable(path, what);
+    inputs.push_back(path);
+  }
+  return inputs;
+}
+
+SceneInputs LoadSceneInputs(const SceneRequest& request, const GivenInMemory& given, const std::string& detections,
+                            bool needs_lifter) {
   SceneInputs inputs;
   inputs.body = given.body != nullptr ? given.body : BodyOrBuiltin(request.body);
   inputs.stature_m = request.stature_m;
   if (given.camera) {
     inputs.camera.camera = *given.camera;
   } else {
-    inputs.camera = CameraFromRequest(request);
+    inputs.camera = CameraFromRequest(request, detections);
   }
   if (request.focal_35mm_mm > 0) {
     inputs.focal_35mm_mm = request.focal_35mm_mm;
@@ -100,7 +119,7 @@ SceneInputs LoadSceneInputs(const TrackRequest& request, const GivenInMemory& gi
   if (!request.video.empty()) UseVideo(request.video, &inputs);
   // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
   // hypotheses do (docs/benchmarks.md).
-  if (request.lifter != "none" && !(request.lifter.empty() && ReadsJointsOffLabels(request))) {
+  if (request.lifter != "none" && (needs_lifter || !request.lifter.empty())) {
     inputs.lifter = request.lifter.empty() ? BuiltinLifter() : ReadLifterWeights(request.lifter);
   }
   if (request.prior != "none") {

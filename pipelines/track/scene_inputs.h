@@ -41,11 +41,17 @@ struct SceneInputs {
   [[nodiscard]] TrackSequenceInput ForTracker() const;
 };
 
-/// Reads what the request names and is not given; the camera has the video's size where nothing else says. Throws
-/// std::runtime_error naming file and place.
-SceneInputs LoadSceneInputs(const TrackRequest& request, const GivenInMemory& given = {});
+/// Every file that the request and the detector name. Throws std::runtime_error naming one that is not there or cannot
+/// be read.
+std::vector<std::string> RequireFiles(const SceneRequest& request, const FrameDetectorOptions& detector);
+
+/// Reads what the request names and is not given; the camera has the video's size where nothing else says.
+/// `detections`: the file of what was seen in the view, if any, which may tell the camera of a calibration folder.
+/// `needs_lifter`: otherwise the built-in one is left out. Throws std::runtime_error naming file and place.
+SceneInputs LoadSceneInputs(const SceneRequest& request, const GivenInMemory& given = {},
+                            const std::string& detections = "", bool needs_lifter = true);
 
 /// A focal length of the request's, if any, makes the camera a pinhole of its image size, which must be known by now.
-void UseFocal(const TrackRequest& request, Camera* camera);
+void UseFocal(const SceneRequest& request, Camera* camera);
 
 }  // namespace bodyloom

@@ -6,6 +6,7 @@
 #include "bodyloom/pipelines/track/track_inputs.h"
 #include "bodyloom/render/view/floor.h"
 #include "bodyloom/tracking/clip/clip_fit.h"
+#include "bodyloom/tracking/clip/track_plan.h"
 #include "bodyloom/tracking/live/track_live.h"
 
 namespace bodyloom {

@@ -135,20 +135,12 @@ void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& cal
 }  // namespace
 
 std::vector<std::string> RequireTrackInputs(const TrackRequest& request) {
-  const std::vector<std::pair<std::string, std::string>> named_inputs = {
-      {request.detections, "detections"},
-      {request.dense, "dense keypoints"},
-      {request.part_labels, "part labels"},
-      {request.cameras, "cameras"},
-      {request.camera_path, "camera path"},
-      {request.video, "video"},
-      {request.body, "body model"},
-      {request.init, "initialiser"},
-      {request.prior == "none" ? "" : request.prior, "pose prior"},
-      {request.lifter == "none" ? "" : request.lifter, "lifter"},
-      {request.reference, "reference track"}};
-  RequirePoseModels(request.detector);
-  std::vector<std::string> inputs = {request.detector.pose_model, request.detector.box_model};
+  std::vector<std::string> inputs = RequireFiles(request, request.detector);
+  const std::vector<std::pair<std::string, std::string>> named_inputs = {{request.detections, "detections"},
+                                                                         {request.dense, "dense keypoints"},
+                                                                         {request.part_labels, "part labels"},
+                                                                         {request.init, "initialiser"},
+                                                                         {request.reference, "reference track"}};
   for (const auto& [path, what] : named_inputs) {
     RequireReadable(path, what);
     inputs.push_back(path);
@@ -171,7 +163,8 @@ TrackSequenceInput TrackInputs::ForTracker() const {
 TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks,
                             const GivenInMemory& given) {
   TrackInputs inputs;
-  static_cast<SceneInputs&>(inputs) = LoadSceneInputs(request, given);
+  static_cast<SceneInputs&>(inputs) =
+      LoadSceneInputs(request, given, request.detections, !ReadsJointsOffLabels(request));
   Camera& camera = inputs.camera.camera;
   if (given.keypoints != nullptr) {
     UseGivenKeypoints(request, *given.keypoints, &inputs);

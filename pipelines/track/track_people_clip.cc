@@ -31,28 +31,23 @@ std::string MaskFile(const TrackPeopleClipRequest& request, int number) {
   return FileIn(request, Concatenate("mask_", number, ".npz"));
 }
 
-/// The request for each person's track, under the names that what is given has in messages.
-TrackRequest NamedTrack(const TrackPeopleRequest& request, const GivenInMemory& given) {
-  TrackRequest track = request.track;
-  track.out = "track", track.overlay = "";
+/// The settings of every person's track, under the names that what is given has in messages.
+TrackSettings NamedSettings(const TrackPeopleRequest& request, const GivenInMemory& given) {
+  TrackSettings track = request.track;
   if (given.camera) track.cameras = "camera";
   return track;
 }
 
-void CheckRequest(const TrackPeopleRequest& request, const TrackRequest& track) {
+void CheckRequest(const TrackPeopleRequest& request, const GivenInMemory& given) {
   CheckTrackPeopleRequest(request);
-  CheckTrackRequest(track);
-  BODYLOOM_CHECK(DetectsPeople(track), "the request holds other observations than a video");
+  CheckTrackSettings(NamedSettings(request, given));
 }
 
 void CheckFiles(const TrackPeopleClipRequest& request) {
-  TrackRequest track = request.track;
-  track.out = TrackFile(request, 0);
-  track.overlay = request.overlay ? FileIn(request, "overlay.mp4") : "";
-  RequireDistinct(
-      RequireTrackInputs(track),
-      {FileIn(request, "detections.npz"), track.out, request.masks ? MaskFile(request, 0) : "", track.overlay,
-       request.report ? FileIn(request, "report.html") : "", FileIn(request, "summary.json")});
+  RequireDistinct(RequireFiles(request.track, request.track.detector),
+                  {FileIn(request, "detections.npz"), TrackFile(request, 0), request.masks ? MaskFile(request, 0) : "",
+                   request.overlay ? FileIn(request, "overlay.mp4") : "",
+                   request.report ? FileIn(request, "report.html") : "", FileIn(request, "summary.json")});
   RequireWritableFolder(request.out);
 }
 
@@ -64,9 +59,10 @@ void CheckClipRequest(const TrackPeopleClipRequest& request, const GivenInMemory
   if (request.masks && !request.track.detector.pose_model.empty()) {
     throw RequestError("--masks are BlazePose's: leave them out with --pose-model");
   }
-  TrackRequest track = NamedTrack(request, given);
-  if (request.overlay) track.overlay = FileIn(request, "overlay.mp4");
-  CheckRequest(request, track);
+  if (request.side_view && !request.overlay) {
+    throw RequestError("--side-view is a part of the overlay: give --overlay");
+  }
+  CheckRequest(request, given);
   CheckFiles(request);
 }
 
@@ -82,7 +78,7 @@ void WriteMasks(const TrackPeopleClipRequest& request, const PeopleInClip& peopl
 }
 
 SceneInputs SceneOf(const TrackPeopleRequest& request, const GivenInMemory& given) {
-  const TrackRequest named = NamedTrack(request, given);
+  const TrackSettings named = NamedSettings(request, given);
   SceneInputs scene = LoadSceneInputs(named, given);
   UseFocal(named, &scene.camera.camera);
   return scene;
@@ -100,7 +96,7 @@ void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scen
   }
   overlay.video = request.track.video;
   overlay.video_px_from_camera_px = scene.camera.video_px_from_camera_px;
-  overlay.side_view = request.track.side_view;
+  overlay.side_view = request.side_view;
   const SharedScene& shared = tracked.result.summary.scene;
   if (shared.has_up) overlay.up_in_camera = shared.ground.up;
   if (shared.has_up && shared.ground.has_plane) {
@@ -189,8 +185,8 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
 
 TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks,
                                   const GivenInMemory& given) {
-  CheckRequest(request, NamedTrack(request, given));
-  RequireTrackInputs(request.track);
+  CheckRequest(request, given);
+  RequireFiles(request.track, request.track.detector);
   StageClock clock;
   clock.Begin("read");
   const SceneInputs scene = SceneOf(request, given);

@@ -17,8 +17,9 @@ namespace bodyloom {
 struct TrackPeopleClipRequest : TrackPeopleRequest {
   std::string out;  ///< folder, made when it is not there
   bool overlay = true;
-  bool report = false;  ///< the clip's page
-  bool masks = false;   ///< each person's mask is written too
+  bool side_view = false;  ///< the overlay also shows everybody from their side
+  bool report = false;     ///< the clip's page
+  bool masks = false;      ///< each person's mask is written too
   /// Masks are written as the network gives them, not cut anew from what stands behind the people (CutMasks()). Tracks
   /// are the same in any case: for them the network's masks do as well.
   bool coarse_masks = false;
@@ -28,8 +29,9 @@ struct TrackPeopleClipRequest : TrackPeopleRequest {
 ///   detections.npz   everybody's landmarks (people_npz.h), before anything else is computed
 ///   person_I.npz     the track of person I (track_io.h) from the first frame that shows it to the last, with the
 ///                    video's times; all tracks are in one camera frame
-///   mask_I.npz       with `masks`: the mask of person I in every frame of the clip (part_labels.h), in the video's
-///   pixels overlay.mp4      all of them over the video (render/view/people_overlay.h)
+///   mask_I.npz       with `masks`: the mask of person I in every frame of the clip (part_labels.h), in the
+///                    video's pixels
+///   overlay.mp4      all of them over the video (render/view/people_overlay.h)
 ///   report.html      with `report`: the page of the clip (pipelines/page/write_clip_page.h)
 ///   summary.json     ToJson(TrackPeopleReport)
 /// Files of these names are replaced; tracks of people whom this run does not find stay. Throws RequestError for a

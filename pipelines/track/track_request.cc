@@ -6,7 +6,7 @@
 
 namespace bodyloom {
 
-CameraKnowledge CameraKnowledgeOf(const TrackRequest& request, bool has_intrinsics) {
+CameraKnowledge CameraKnowledgeOf(const SceneRequest& request, bool has_intrinsics) {
   if (request.camera == "weak") {
     return CameraKnowledge::kWeak;
   }
@@ -15,18 +15,44 @@ CameraKnowledge CameraKnowledgeOf(const TrackRequest& request, bool has_intrinsi
                                                                                    : CameraKnowledge::kUnknownFocal;
 }
 
-double StraightKneesWeight(const TrackRequest& request, const std::string& convention) {
-  return request.straight_knees.value_or(convention == MediaPipe33().name ? kBlazePoseStraightKnees : 0);
+double StraightKneesWeight(const TrackSettings& settings, const std::string& convention) {
+  return settings.straight_knees.value_or(convention == MediaPipe33().name ? kBlazePoseStraightKnees : 0);
 }
 
 bool DetectsPeople(const TrackRequest& request) {
   return request.detections.empty() && request.dense.empty() && request.part_labels.empty() && !request.video.empty();
 }
 
-bool DetectsMasks(const TrackRequest& request) { return request.use_mask && request.detector.pose_model.empty(); }
+bool DetectsMasks(const DetectionSettings& settings) {
+  return settings.use_mask && settings.detector.pose_model.empty();
+}
 
 bool ReadsJointsOffLabels(const TrackRequest& request) {
   return request.detections.empty() && request.dense.empty() && !request.part_labels.empty();
+}
+
+void CheckTrackSettings(const TrackSettings& request) {
+  if (request.camera == "pinhole" && request.cameras.empty() && request.focal_px == 0 && request.camera_path.empty()) {
+    throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
+  }
+  if (request.camera_path.empty() &&
+      (request.camera_scale_m > 0 || request.camera_path_first >= 0 || request.camera_path_fps > 0)) {
+    throw RequestError("--camera-scale, --camera-path-first and --camera-path-fps are of a path: give --camera-path");
+  }
+  if (!request.camera_path.empty() && request.camera == "weak") {
+    throw RequestError("weak perspective has no place in a scene: leave out --camera weak or --camera-path");
+  }
+  if (request.focal_35mm_mm > 0 && (!request.cameras.empty() || request.focal_px > 0 || request.camera == "weak")) {
+    throw RequestError(
+        "--focal-35mm is where to look for a focal length that is estimated: leave it out beside --cameras, "
+        "--focal and --camera weak");
+  }
+  if (!request.cameras.empty() && request.focal_px > 0) {
+    throw RequestError("--cameras and --focal both give the focal length, expected one of them");
+  }
+  if (request.stature_m > 0 && !request.solve.estimate_shape) {
+    throw RequestError("--stature changes the shape that --no-shape keeps, expected one of them");
+  }
 }
 
 void CheckTrackRequest(const TrackRequest& request) {
@@ -48,29 +74,9 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (request.out.empty() && !request.plan) {
     throw RequestError("--out is required (or --plan, to see what would be done)");
   }
-  if (request.camera == "pinhole" && request.cameras.empty() && request.focal_px == 0 && request.camera_path.empty()) {
-    throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
-  }
-  if (request.camera_path.empty() &&
-      (request.camera_scale_m > 0 || request.camera_path_first >= 0 || request.camera_path_fps > 0)) {
-    throw RequestError("--camera-scale, --camera-path-first and --camera-path-fps are of a path: give --camera-path");
-  }
-  if (!request.camera_path.empty() && request.camera == "weak") {
-    throw RequestError("weak perspective has no place in a scene: leave out --camera weak or --camera-path");
-  }
+  CheckTrackSettings(request);
   if (!request.camera_path.empty() && request.live_lag) {
     throw RequestError("--live is for a camera that stands still: leave out --camera-path or --live");
-  }
-  if (request.focal_35mm_mm > 0 && (!request.cameras.empty() || request.focal_px > 0 || request.camera == "weak")) {
-    throw RequestError(
-        "--focal-35mm is where to look for a focal length that is estimated: leave it out beside --cameras, "
-        "--focal and --camera weak");
-  }
-  if (!request.cameras.empty() && request.focal_px > 0) {
-    throw RequestError("--cameras and --focal both give the focal length, expected one of them");
-  }
-  if (request.stature_m > 0 && !request.solve.estimate_shape) {
-    throw RequestError("--stature changes the shape that --no-shape keeps, expected one of them");
   }
   if (request.stature_m > 0 && request.live_lag) {
     throw RequestError("--live does not use --stature: leave it out");

@@ -8,6 +8,7 @@
 #include "bodyloom/geometry/base/check.h"
 #include "bodyloom/geometry/base/stopwatch.h"
 #include "bodyloom/geometry/body/posed_body.h"
+#include "bodyloom/tracking/clip/track_plan.h"
 #include "bodyloom/tracking/clip/track_result.h"
 #include "bodyloom/tracking/problem/input_checks.h"
 #include "bodyloom/tracking/terms/dense/dense.h"

@@ -193,11 +193,13 @@ TEST(TrackPeopleClip, WhatContradictsItselfIsNamed) {
   request.track.camera = "weak";
   EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("weak perspective")));
   request.track.camera = "";
-  request.track.live_lag = 3;
-  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--live")));
+  request.side_view = true;
+  request.overlay = false;
+  EXPECT_THAT(run, ThrowsMessage<RequestError>(HasSubstr("--side-view")));
+  request.side_view = false;
+  request.overlay = true;
   EXPECT_FALSE(std::filesystem::exists(request.out)) << "nothing was made";
   // The results would replace the video.
-  request.track.live_lag.reset();
   request.out = folder / ".";
   request.track.video = folder / "overlay.mp4";
   WriteFileAtomically(request.track.video, "a video");
