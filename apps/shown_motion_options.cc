@@ -10,7 +10,7 @@ void AddViewYaw(CLI::App* verb, std::string* view_yaw) {
                    "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
 }
 
-void AddShownMotion(CLI::App* verb, const ShownMotion& shown) {
+void AddShownMotion(CLI::App* verb, const ShownMotionArguments& shown) {
   AddViewYaw(verb, shown.view_yaw);
   verb->add_option_function<std::string>(
           "--shape", [of_track = shown.shape_of_track](const std::string& whose) { *of_track = whose == "track"; },

@@ -16,13 +16,13 @@ namespace bodyloom {
 void AddViewYaw(CLI::App* verb, std::string* view_yaw);
 
 /// Where the options of a person who was trained on go.
-struct ShownMotion {
+struct ShownMotionArguments {
   std::string *view_yaw, *freeze, *background;
   bool* shape_of_track;
 };
 
 /// --view-yaw, --shape, --freeze, --background.
-void AddShownMotion(CLI::App* verb, const ShownMotion& shown);
+void AddShownMotion(CLI::App* verb, const ShownMotionArguments& shown);
 
 }  // namespace bodyloom
 

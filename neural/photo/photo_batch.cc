@@ -3,9 +3,6 @@
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/neural/training/photo_partner.h"
 #include "bodyloom/render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
@@ -46,43 +43,6 @@ PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> 
     batch.faces.push_back(Inside(FaceBox(targets[i], back_of_head), windows[i]));
   }
   return batch;
-}
-
-namespace {
-
-/// 0 … count − 1.
-int Draw(uint64_t hash, size_t count) {
-  return std::min(static_cast<int>(UniformOf(hash) * static_cast<double>(count)), static_cast<int>(count) - 1);
-}
-
-PhotoPair PairOf(const PhotoSource& people, int person, uint64_t hash) {
-  const std::vector<int>& num_frames = people.num_frames;
-  BODYLOOM_CHECK(person >= 0 && static_cast<size_t>(person) < num_frames.size() && num_frames[person] > 0,
-                 "photo pairs: person ", person, " has no frames");
-  PhotoPair pair;
-  pair.person = person;
-  pair.source = Draw(Mix(hash ^ 1), num_frames[person]);
-  pair.target = PartnerOf(people, person, pair.source, PartnerDiffers::kPose, UniformOf(Mix(hash ^ 2)));
-  return pair;
-}
-
-}  // namespace
-
-PhotoPair DrawPhotoPair(const PhotoSource& people, std::span<const int> persons, uint64_t seed, int64_t step,
-                        int place) {
-  BODYLOOM_CHECK(!persons.empty(), "photo pairs: no persons");
-  const uint64_t hash = Mix(Mix(Mix(seed) ^ static_cast<uint64_t>(step)) ^ static_cast<uint64_t>(place));
-  return PairOf(people, persons[Draw(hash, persons.size())], hash);
-}
-
-std::vector<PhotoPair> ValidationPairs(const PhotoSource& people, std::span<const int> persons, int per_person) {
-  std::vector<PhotoPair> pairs;
-  for (const int person : persons) {
-    for (int i = 0; i < per_person; ++i) {
-      pairs.push_back(PairOf(people, person, Mix(Mix(static_cast<uint64_t>(person)) ^ static_cast<uint64_t>(i))));
-    }
-  }
-  return pairs;
 }
 
 }  // namespace bodyloom

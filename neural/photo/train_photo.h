@@ -22,10 +22,10 @@
 #include <vector>
 
 #include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/neural/photo/photo_batch.h"
 #include "bodyloom/neural/photo/photo_config.h"
-#include "bodyloom/neural/photo/photo_scores.h"
+#include "bodyloom/neural/photo/photo_pairs.h"
 #include "bodyloom/neural/photo/photo_picture.h"
+#include "bodyloom/neural/photo/photo_scores.h"
 #include "bodyloom/neural/training/training_run.h"
 #include "bodyloom/render/texture/photo_frame.h"
 

@@ -90,7 +90,7 @@ void ReportDense(const DetectedDense& detected, DetectClipReport* report) {
   report->dense = {detected.people, detected.frames_seen, double(points) / detected.frames_seen};
 }
 
-nlohmann::ordered_json ToJson(const std::vector<FoundPerson>& people) {
+nlohmann::ordered_json PeopleJson(const std::vector<FoundPerson>& people) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const FoundPerson& person : people) {
     list.push_back({{"frames", person.frames},
@@ -181,7 +181,7 @@ std::string ToJson(const DetectClipReport& report) {
     json["frames_with_people"] = found.frames_with_people;
     json["frames_detected"] = found.detector.frames;
     json["network"] = found.network;
-    json["people"] = ToJson(found.people);
+    json["people"] = PeopleJson(found.people);
     json["searches"] = found.detector.searches;
     json["regions"] = found.detector.regions;
     json["search_seconds"] = found.detector.search_seconds;

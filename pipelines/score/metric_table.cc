@@ -116,7 +116,7 @@ std::string ToText(const SpeedReaction& reaction) {
   return text;
 }
 
-nlohmann::ordered_json ToJson(const SpeedReaction& reaction) {
+nlohmann::ordered_json ReactionJson(const SpeedReaction& reaction) {
   nlohmann::ordered_json extents = nlohmann::ordered_json::object();
   for (size_t k = 0; k < reaction.extents.size(); ++k) {
     const SpeedReaction::OfExtent& extent = reaction.extents[k];
@@ -186,7 +186,7 @@ std::string ToJson(const CompareResultsReport& report) {
                        {"mask", report.mask},      {"ssim_preset", report.preset},
                        {"kinds", kinds},           {"only_one_side", report.only_one_side},
                        {"seconds", report.seconds}};
-  if (report.reaction) json["reaction"] = ToJson(*report.reaction);
+  if (report.reaction) json["reaction"] = ReactionJson(*report.reaction);
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -13,7 +13,7 @@
 /// + ½ w ρ((n·u)² / σ²)                        upright trunk (terms/upright.h)
 /// + ½ w² Σ ρ(θ²)                              straight knees (terms/straight_knees.h)
 /// + ½ λ_d (‖log(R̄ᵀR)‖²/σ_R² + ‖t − t̄‖²/σ_t²)  initialiser (terms/initialiser.h), L_d
-/// + ½ Σ ρ(‖r‖²)                               a user's own (terms/user/user_term.h)
+/// + ½ Σ ρ(‖r‖²)                               a user's own (tracking/problem/user_term.h)
 #pragma once
 
 #include <memory>

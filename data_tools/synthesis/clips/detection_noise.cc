@@ -81,7 +81,7 @@ KeypointSequence DetectKeypoints(const KeypointSequence& exact, const std::vecto
       if (options.model_confidence) {
         confidence = ConfidenceInView(kind, frames[t].head_cosine[k]) * (hidden ? kHiddenFactor : 1.0);
         confidence = std::clamp(confidence + (hidden ? kHiddenConfidenceDrift : kConfidenceDrift) * mood[t],
-                                kMinConfidence, 1.0);
+                                kMinDetectedConfidence, 1.0);
       }
       const double h = frames[t].person_height_px;
       const double sigma = joint_factor * DetectionSigma(confidence);

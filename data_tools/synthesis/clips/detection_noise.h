@@ -64,7 +64,7 @@ inline constexpr double kHeavyTailSeconds = 0.2;      ///< redrawn so often
 inline constexpr double kHiddenFactor = 0.16;         ///< of the confidence, when the body hides the landmark
 inline constexpr double kConfidenceDrift = 0.09, kHiddenConfidenceDrift = 0.05;  ///< slow changes of the confidence
 inline constexpr double kConfidenceDriftSeconds = 0.3;
-inline constexpr double kMinConfidence = 0.02;
+inline constexpr double kMinDetectedConfidence = 0.02;
 
 /// The landmark's kind: its name without the side.
 inline std::string_view LandmarkKind(std::string_view name) {

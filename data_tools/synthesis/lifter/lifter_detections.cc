@@ -274,7 +274,7 @@ LifterFrames DetectScene(const LifterScene& scene, const LifterWindowOptions& op
             static_cast<float>(kHiddenConfidenceDrift) + static_cast<float>(kConfidenceDrift - kHiddenConfidenceDrift) *
                                                              std::min(1.0F, 2 * std::max(0.0F, hidden - 0.5F));
         confidence = (k < kLifterLeftShoulder ? face[k] : typical[k]) * hidden + drift * mood[k];
-        confidence = std::clamp(confidence, static_cast<float>(kMinConfidence), 1.0F);
+        confidence = std::clamp(confidence, static_cast<float>(kMinDetectedConfidence), 1.0F);
       }
       const float sigma = joint_factor[k] * DetectionSigma(confidence);
       const float scale = noise * height * (confidence < static_cast<float>(kHeavyTailConfidence) ? 1 + tail[k] : 1.0F);

@@ -23,6 +23,7 @@
 #include "bodyloom/geometry/uv_maps/uv_texels.h"
 #include "bodyloom/pipelines/photo_avatar/animate_person.h"
 #include "bodyloom/pipelines/photo_avatar/person_folder.h"
+#include "bodyloom/render/garment/person_cloth.h"
 #include "bodyloom/render/texture/body_regions.h"
 #include "bodyloom/render/view/overlay.h"
 #include "tests/support/scratch_folder.h"

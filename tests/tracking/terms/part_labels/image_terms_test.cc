@@ -14,6 +14,7 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/render/raster/visibility_buffer.h"
+#include "bodyloom/tracking/clip/track_plan.h"
 
 namespace bodyloom {
 namespace {
