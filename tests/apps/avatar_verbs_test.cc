@@ -9,7 +9,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::avatar_verbs_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(AvatarVerbs, WrongUseIsSaidInALine) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::avatar_verbs_test

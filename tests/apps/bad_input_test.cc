@@ -12,7 +12,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -184,4 +184,4 @@ TEST_F(BadInput, AnInterruptedVideoLeavesNoHalfVideo) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::bad_input_test

@@ -19,7 +19,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::batch_verb_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -259,4 +259,4 @@ TEST_F(BatchVerb, TwoOnOneShardAtOnceLeaveItWhole) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::batch_verb_test

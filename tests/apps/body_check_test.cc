@@ -15,7 +15,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::body_check_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -136,4 +136,4 @@ TEST_F(BodyCheck, FacesThatCross) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::body_check_test

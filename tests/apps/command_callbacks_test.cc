@@ -6,7 +6,7 @@
 #include <csignal>
 #include <sstream>
 
-namespace bodyloom {
+namespace bodyloom::command_callbacks_test {
 namespace {
 
 TEST(CommandCallbacks, MessagesAreLines) {
@@ -54,4 +54,4 @@ TEST(CommandCallbacks, AnInterruptCancels) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::command_callbacks_test

@@ -6,7 +6,7 @@
 #include "apps/usage_error.h"
 #include "tests/support/run_command.h"
 
-namespace bodyloom {
+namespace bodyloom::command_line_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -116,4 +116,4 @@ TEST(CommandLine, NeuralVerbsRunOrSayThatTheyWereNotBuilt) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::command_line_test

@@ -13,7 +13,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::describe_verbs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ TEST_F(DescribeVerbs, TextureSaysWhenVideoAndTrackDiffer) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::describe_verbs_test

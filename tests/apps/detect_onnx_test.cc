@@ -13,7 +13,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::detect_onnx_test {
 namespace {
 
 using ::testing::Contains;
@@ -96,4 +96,4 @@ TEST_F(DetectOnnx, WrongUse) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::detect_onnx_test

@@ -16,7 +16,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::metrics_verb_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -271,4 +271,4 @@ TEST_F(MetricsVerb, ReactionToTheSpeedOfTheTruthItselfIsWhole) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::metrics_verb_test

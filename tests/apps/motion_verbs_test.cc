@@ -12,7 +12,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_verbs_test {
 namespace {
 
 /// Two motions and a split that keeps one of them for testing.
@@ -124,4 +124,4 @@ TEST(TrackVerb, ALifterFileThatIsNone) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_verbs_test

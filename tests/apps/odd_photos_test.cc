@@ -15,7 +15,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::odd_photos_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST_F(OddPhotos, AreTakenOrRefusedByThePoseGuidedRenderer) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::odd_photos_test

@@ -15,7 +15,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::parse_verb_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -79,4 +79,4 @@ TEST_F(ParseVerb, TakesWeights) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::parse_verb_test

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <thread>
 
-namespace bodyloom {
+namespace bodyloom::progress_test {
 namespace {
 
 using ::testing::EndsWith;
@@ -77,4 +77,4 @@ TEST(Progress, SilentWritesNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::progress_test

@@ -22,7 +22,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::render_verb_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -396,4 +396,4 @@ TEST_F(RenderVerb, AFullDiskLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::render_verb_test

@@ -15,7 +15,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::synth_person_verb_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -231,4 +231,4 @@ TEST(SynthPeopleVerb, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::synth_person_verb_test

@@ -21,7 +21,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::track_dense_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -125,4 +125,4 @@ TEST_F(TrackDense, NoiseWithoutDenseKeypointsIsAMistake) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_dense_test

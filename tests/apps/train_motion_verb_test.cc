@@ -17,7 +17,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::train_motion_verb_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -464,4 +464,4 @@ TEST_F(TrainMotionVerb, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::train_motion_verb_test

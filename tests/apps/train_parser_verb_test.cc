@@ -8,7 +8,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::train_parser_verb_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -61,4 +61,4 @@ TEST_F(TrainParserVerb, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::train_parser_verb_test

@@ -17,7 +17,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::train_photo_verb_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -284,4 +284,4 @@ TEST_F(TrainPhotoVerb, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::train_photo_verb_test

@@ -17,7 +17,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::verbs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -271,4 +271,4 @@ TEST_F(Verbs, ABodyFromAFileTracksLikeTheBuiltInOne) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::verbs_test

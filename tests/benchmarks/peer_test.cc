@@ -14,7 +14,7 @@
 #include "bodyloom/tracking/terms/upright.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::peer_test {
 namespace {
 
 std::unique_ptr<WorkProblem> Problem(int frames, const std::string& noise) {
@@ -87,4 +87,4 @@ TEST(Peers, PyTorchStatesTheSameCost) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::peer_test

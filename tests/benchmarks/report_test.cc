@@ -11,7 +11,7 @@
 #include "benchmarks/report/render_report.h"
 #include "bodyloom/data_tools/formats/atomic_file.h"
 
-namespace bodyloom {
+namespace bodyloom::report_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -173,4 +173,4 @@ TEST_F(Reports, WhatIsNoBenchmarkIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::report_test

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Checks that the source files of a library can be compiled together (CMAKE_UNITY_BUILD): a name in an unnamed namespace
-is that file's alone among the files of its library, and no header of the library declares it.
+is that file's alone among the files of its library, and no header of the library declares it. Tests: each x_test.cc has
+a namespace of its own.
 
 usage: check_names.py [ROOT]      exit 0 when all is well, 1 with one line a fault, 2 when there is nothing to check
 
@@ -143,6 +144,20 @@ def library_of(path):
     return best
 
 
+def check_tests(root):
+    """Faults of tests/FOLDER/…/x_test.cc, which are compiled together: each has a namespace of its own, ending in
+    ::x_test, and the only file of its name in FOLDER."""
+    faults, seen = [], {}
+    for path in sorted(p.relative_to(root) for p in (root / "tests").rglob("*_test.cc")) if (root / "tests").is_dir() else []:
+        text = blanked((root / path).read_text(encoding="utf-8"))
+        if "TEST" in text and not re.search(rf"^namespace bodyloom(::\w+)*::{path.stem} \{{$", text, re.M):
+            faults.append(f"{path}: no namespace bodyloom::{path.stem}")
+        other = seen.setdefault((path.parts[1], path.stem), path)
+        if other != path:
+            faults.append(f"{path}: {path.stem}, also {other}; give it a name of its own")
+    return faults
+
+
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
     public, private, faults = {}, {}, []
@@ -171,6 +186,7 @@ def main():
                 other = declared_at
             if other:
                 faults.append(f"{place}: {name}{kind if kind.startswith('(') else ''}, also in {other}; give it a name of its own")
+    faults += check_tests(root)
     print("\n".join(faults + [f"{len(files)} files, {count} names in unnamed namespaces, {len(faults)} faults"]))
     return 1 if faults else 0
 

@@ -41,6 +41,18 @@ class CheckNames(unittest.TestCase):
         self.expect_collision("kTable", "constexpr int kTable[] = {1, 2};", "constexpr std::array<int, 2> kTable = {1, 2};")
         self.expect_collision("kText", 'constexpr const char* kText = "{;";', 'constexpr const char* kText = R"(")";};)";')
 
+    def test_tests_have_namespaces_of_their_own(self):
+        def test(name):
+            return f"namespace bodyloom::{name} {{\nnamespace {{\nTEST(A, B) {{}}\n}}  // namespace\n}}  // namespace bodyloom::{name}\n"
+        files = {"geometry/a.cc": "", "tests/geometry/a_test.cc": test("a_test")}
+        self.expect_allowed(files)
+        code, out = check({**files, "tests/geometry/b_test.cc": test("a_test")})
+        self.assertEqual(code, 1, out)
+        self.assertIn("tests/geometry/b_test.cc: no namespace bodyloom::b_test", out)
+        code, out = check({**files, "tests/geometry/body/a_test.cc": test("a_test")})
+        self.assertEqual(code, 1, out)
+        self.assertIn("a_test, also tests/geometry/a_test.cc", out)
+
     def test_types(self):
         self.expect_collision("Reader", "class Reader {\n int F() { return 1; }\n};", "struct Reader final : Base {\n};")
         self.expect_collision("Kind", "enum class Kind { kA };", "using Kind = int;")

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::clock_text_test {
 namespace {
 
 TEST(ClockText, MinutesAndHours) {
@@ -15,4 +15,4 @@ TEST(ClockText, MinutesAndHours) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::clock_text_test

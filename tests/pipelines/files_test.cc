@@ -11,7 +11,7 @@
 
 #include "bodyloom/geometry/base/callbacks.h"
 
-namespace bodyloom {
+namespace bodyloom::files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +76,4 @@ TEST_F(Files, ReadingAndWritingTheSameFileIsAMistake) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::files_test

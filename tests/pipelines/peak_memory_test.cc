@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::peak_memory_test {
 namespace {
 
 TEST(PeakMemory, IsThatOfAProcess) {
@@ -12,4 +12,4 @@ TEST(PeakMemory, IsThatOfAProcess) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::peak_memory_test

@@ -16,7 +16,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::picture_test {
 namespace {
 
 constexpr Colour kWhite{255, 255, 255};
@@ -205,4 +205,4 @@ TEST(Palette, SidesAreToldApart) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::picture_test

@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::raster_law_test {
 namespace {
 
 struct Scene {
@@ -318,4 +318,4 @@ TEST(RasterLaw, AFailedPictureShowsNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::raster_law_test

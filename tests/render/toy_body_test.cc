@@ -13,7 +13,7 @@
 #include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/geometry/scene/observations.h"
 
-namespace bodyloom {
+namespace bodyloom::toy_body_test {
 namespace {
 
 TEST(ToyBody, IsAClosedSurfaceTurnedOutwards) {
@@ -130,4 +130,4 @@ TEST(ToyBody, CorrectivesAndShapeMoveTheSurface) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::toy_body_test

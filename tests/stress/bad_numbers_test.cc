@@ -7,7 +7,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "tests/stress/stress_support.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::bad_numbers_test {
 namespace {
 
 class BadNumbers : public EngineTest {};
@@ -209,4 +209,4 @@ TEST_P(BadNumbers, AnInitialiserFarAwayOrBehindTheCameraEnds) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::bad_numbers_test

@@ -7,7 +7,7 @@
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "tests/stress/stress_support.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::broken_clips_test {
 namespace {
 
 class BrokenClips : public EngineTest {};
@@ -178,4 +178,4 @@ TEST_P(BrokenClips, AShapeThatNothingShowsStaysAtItsPrior) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::broken_clips_test

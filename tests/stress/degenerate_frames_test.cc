@@ -8,7 +8,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "tests/stress/stress_support.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::degenerate_frames_test {
 namespace {
 
 class DegenerateFrames : public EngineTest {};
@@ -149,4 +149,4 @@ TEST_P(DegenerateFrames, OneOrTwoPointsInAWholeClipAreAFailureThatSaysWhy) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::degenerate_frames_test

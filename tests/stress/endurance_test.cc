@@ -7,7 +7,7 @@
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::endurance_test {
 namespace {
 
 class Endurance : public EngineTest {};
@@ -87,4 +87,4 @@ TEST_P(Endurance, SlowClipOf20000Frames) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::endurance_test

@@ -8,7 +8,7 @@
 #include "tests/stress/stress_support.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::hard_motions_test {
 namespace {
 
 class HardMotions : public EngineTest {};
@@ -51,4 +51,4 @@ TEST_P(HardMotions, AcrobaticsAt16FramesASecond) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::hard_motions_test

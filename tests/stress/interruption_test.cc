@@ -24,7 +24,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::interruption_test {
 namespace {
 
 /// Starts `bodyloom arguments...` and kills it (SIGKILL) after `milliseconds`. Returns whether it was still running.
@@ -171,4 +171,4 @@ TEST(Interruption, ABatchKilledAgainAndAgainEndsAsOneThatWasNot) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::interruption_test

@@ -16,7 +16,7 @@
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::invariance_test {
 namespace {
 
 class Invariance : public EngineTest {};
@@ -268,4 +268,4 @@ TEST_P(Invariance, AMirroredImageGivesTheMirroredPerson) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::invariance_test

@@ -7,7 +7,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "tests/stress/stress_support.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::rotations_test {
 namespace {
 
 class Rotations : public EngineTest {};
@@ -96,4 +96,4 @@ TEST_P(Rotations, StartsTurnedFarOffTheTruthComeBackWithDenseKeypoints) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::rotations_test

@@ -7,7 +7,7 @@
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom::stress {
+namespace bodyloom::stress::sizes_test {
 namespace {
 
 class Sizes : public EngineTest {};
@@ -88,4 +88,4 @@ TEST_P(Sizes, AnInitialiserInMillimetresIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stress
+}  // namespace bodyloom::stress::sizes_test

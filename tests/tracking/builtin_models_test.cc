@@ -10,7 +10,7 @@
 #include "bodyloom/data_tools/learned/pose_prior_io.h"
 #include "bodyloom/tracking/lifter/lift_keypoints.h"
 
-namespace bodyloom {
+namespace bodyloom::builtin_models_test {
 namespace {
 
 TEST(WithBuiltins, FillsInWhatTheInputDoesNotName) {
@@ -54,4 +54,4 @@ TEST(WithBuiltins, AnothersLandmarksTakeTheLiftersPlace) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::builtin_models_test

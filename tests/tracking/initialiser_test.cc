@@ -21,7 +21,7 @@
 #include "bodyloom/tracking/lifter/lifter_input.h"
 #include "bodyloom/tracking/live/track_live.h"
 
-namespace bodyloom {
+namespace bodyloom::initialiser_test {
 namespace {
 
 constexpr int kFrames = 40;
@@ -201,4 +201,4 @@ TEST(GivenLandmarks, TakeTheLiftersPlace) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::initialiser_test

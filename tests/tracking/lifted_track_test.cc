@@ -13,7 +13,7 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "bodyloom/tracking/clip/clip_fit.h"
 
-namespace bodyloom {
+namespace bodyloom::lifted_track_test {
 namespace {
 
 SynthClip Clip(int frames, double fps, double elevation_deg = 8) {
@@ -274,4 +274,4 @@ TEST(LiftedTrack, AMirroredVideoGivesTheMirroredPerson) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifted_track_test

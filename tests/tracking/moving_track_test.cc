@@ -15,7 +15,7 @@
 #include "bodyloom/tracking/live/track_live.h"
 #include "bodyloom/tracking/people/track_people.h"
 
-namespace bodyloom {
+namespace bodyloom::moving_track_test {
 namespace {
 
 /// Somebody walks, and a camera goes along.
@@ -130,4 +130,4 @@ TEST_F(MovingTrack, PeopleShareOneScale) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::moving_track_test

@@ -12,7 +12,7 @@
 #include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 
-namespace bodyloom {
+namespace bodyloom::track_sequence_test {
 namespace {
 
 SynthClip Clip(int frames, int dense) {
@@ -107,4 +107,4 @@ TEST(TrackSequence, ContradictionsAreNamed) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_sequence_test

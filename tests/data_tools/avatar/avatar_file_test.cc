@@ -17,7 +17,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::avatar_file_test {
 namespace {
 
 constexpr int kCount = 70;
@@ -317,4 +317,4 @@ TEST(AlphaPng, KeepsColoursAndAlpha) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::avatar_file_test

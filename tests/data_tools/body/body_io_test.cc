@@ -21,7 +21,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::body_io_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -376,4 +376,4 @@ TEST(BodyIo, BuiltInBodyDenseAndCompact) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::body_io_test

@@ -13,7 +13,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::body_io_uv_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -243,4 +243,4 @@ TEST(PartsFromUvProcessedMat, RefusesBrokenFiles) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::body_io_uv_test

@@ -16,7 +16,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::builtin_body_test {
 namespace {
 
 const std::string kCagePath = SourceDir() + "/assets/body/cage_left_half.txt";
@@ -177,4 +177,4 @@ TEST(BuiltinBody, MissingFiles) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::builtin_body_test

@@ -11,7 +11,7 @@
 #include "bodyloom/geometry/mesh/mesh_check.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::repair_body_test {
 namespace {
 
 CheckMeshResult Check(const BodyModelData& body) { return CheckMesh(body.v_template, body.faces); }
@@ -237,4 +237,4 @@ TEST(RepairBody, AMendedToyBodyPosesAsBefore) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::repair_body_test

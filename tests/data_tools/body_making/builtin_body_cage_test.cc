@@ -9,7 +9,7 @@
 #include "bodyloom/data_tools/formats/printable.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
-namespace bodyloom {
+namespace bodyloom::builtin_body_cage_test {
 namespace {
 
 /// The left half of a cube on the mirror plane, with comments, blank lines and DOS line ends.
@@ -101,4 +101,4 @@ TEST(Cage, SurvivesRandomEdits) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::builtin_body_cage_test

@@ -12,7 +12,7 @@
 
 #include "tests/data_tools/body_making/recipe_support.h"
 
-namespace bodyloom {
+namespace bodyloom::recipe_charts_test {
 namespace {
 
 using Triangle2 = Eigen::Matrix<double, 3, 2>;
@@ -317,4 +317,4 @@ TEST(RecipeCharts, TexelDensityAndDistortion) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::recipe_charts_test

@@ -11,7 +11,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/body_making/recipe_support.h"
 
-namespace bodyloom {
+namespace bodyloom::recipe_correctives_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -189,4 +189,4 @@ TEST(RecipeCorrectives, ApproachDualQuaternions) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::recipe_correctives_test

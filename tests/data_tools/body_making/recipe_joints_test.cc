@@ -8,7 +8,7 @@
 #include "bodyloom/geometry/scene/observations.h"
 #include "tests/data_tools/body_making/recipe_support.h"
 
-namespace bodyloom {
+namespace bodyloom::recipe_joints_test {
 namespace {
 
 Eigen::RowVector3d Joint(const std::string& name) {
@@ -153,4 +153,4 @@ TEST(RecipeJoints, SkinningWeights) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::recipe_joints_test

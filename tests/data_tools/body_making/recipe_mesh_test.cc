@@ -12,7 +12,7 @@
 #include "tests/data_tools/body_making/recipe_support.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::recipe_mesh_test {
 namespace {
 
 /// One number for an array that notices a change of any coordinate: Σ sin(0.7371 i + phase) x_i.
@@ -209,4 +209,4 @@ TEST(RecipeMesh, EqualsTheOriginalFile) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::recipe_mesh_test

@@ -4,7 +4,7 @@
 
 #include "tests/data_tools/body_making/recipe_support.h"
 
-namespace bodyloom {
+namespace bodyloom::recipe_shape_test {
 namespace {
 
 struct Measures {
@@ -90,4 +90,4 @@ TEST(RecipeShape, VarianceShares) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::recipe_shape_test

@@ -10,7 +10,7 @@
 
 #include "bodyloom/data_tools/body_making/openmesh_catmull_clark.h"
 
-namespace bodyloom {
+namespace bodyloom::subdivision_test {
 namespace {
 
 QuadMesh Cube() {
@@ -177,4 +177,4 @@ TEST(Subdivision, TrianglesOfQuads) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::subdivision_test

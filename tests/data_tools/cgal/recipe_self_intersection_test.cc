@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/geometry/body/posed_body.h"
 
-namespace bodyloom {
+namespace bodyloom::recipe_self_intersection_test {
 namespace {
 
 using Mesh = CGAL::Surface_mesh<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3>;
@@ -52,4 +52,4 @@ TEST(RecipeSelfIntersection, TheJudgeSeesOne) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::recipe_self_intersection_test

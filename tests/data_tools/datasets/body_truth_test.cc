@@ -12,7 +12,7 @@
 #include "bodyloom/data_tools/datasets/photo_segmentation.h"
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 
-namespace bodyloom {
+namespace bodyloom::body_truth_test {
 namespace {
 
 constexpr int kWidth = 80, kHeight = 60;
@@ -110,4 +110,4 @@ TEST(BodyTruth, WithoutABodyAllIsBackground) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::body_truth_test

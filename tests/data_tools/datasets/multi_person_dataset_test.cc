@@ -14,7 +14,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::multi_person_dataset_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ TEST(MultiPersonDataset, MakingChecksItsContract) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::multi_person_dataset_test

@@ -14,7 +14,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::single_person_dataset_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -247,4 +247,4 @@ TEST(SinglePersonDataset, NormalsSurviveTheirCode) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::single_person_dataset_test

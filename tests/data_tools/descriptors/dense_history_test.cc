@@ -18,7 +18,7 @@
 #include "tests/support/short_track.h"
 #include "tests/support/write_iuv.h"
 
-namespace bodyloom {
+namespace bodyloom::dense_history_test {
 namespace {
 
 constexpr int kPast = 3;
@@ -203,4 +203,4 @@ TEST_F(DenseHistoryTest, RefusesTheWrongSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::dense_history_test

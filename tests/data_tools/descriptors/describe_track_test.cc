@@ -17,7 +17,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::describe_track_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -361,4 +361,4 @@ TEST(DescribeTrack, RefusesWhatItCannotDescribe) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::describe_track_test

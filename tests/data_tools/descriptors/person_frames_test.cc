@@ -20,7 +20,7 @@
 #include "bodyloom/render/raster/visibility_buffer.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::person_frames_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -266,4 +266,4 @@ TEST(PersonFrames, RefusesTheWrongSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::person_frames_test

@@ -16,7 +16,7 @@
 #include "tests/support/short_track.h"
 #include "tests/support/write_iuv.h"
 
-namespace bodyloom {
+namespace bodyloom::photo_maps_test {
 namespace {
 
 constexpr int kSize = 96, kTexture = 64;
@@ -293,4 +293,4 @@ TEST(PhotoSegmentation, TheBackgroundIsFilledAndTheRestKept) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::photo_maps_test

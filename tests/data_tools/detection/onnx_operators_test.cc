@@ -11,7 +11,7 @@
 #include "bodyloom/tracking/detection/inference/onnx_products.h"
 #include "bodyloom/tracking/detection/inference/onnx_rearrangement.h"
 
-namespace bodyloom {
+namespace bodyloom::onnx_operators_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -388,4 +388,4 @@ TEST(OnnxConvolution, WhatDoesNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::onnx_operators_test

@@ -19,7 +19,7 @@
 #include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
-namespace bodyloom {
+namespace bodyloom::pose_networks_test {
 namespace {
 
 std::optional<TfliteModel> ModelIfThere(const std::string& file) {
@@ -215,4 +215,4 @@ TEST(PoseNetworks, CutDetector) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pose_networks_test

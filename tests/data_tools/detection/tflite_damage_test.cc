@@ -12,7 +12,7 @@
 #include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
-namespace bodyloom {
+namespace bodyloom::tflite_damage_test {
 namespace {
 
 using Writer = TfliteWriter;
@@ -84,4 +84,4 @@ TEST(TfliteModel, ManyBytesChanged) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::tflite_damage_test

@@ -11,7 +11,7 @@
 #include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
-namespace bodyloom {
+namespace bodyloom::tflite_refusals_test {
 namespace {
 
 using Writer = TfliteWriter;
@@ -456,4 +456,4 @@ TEST(TfliteModel, WhatIsComputedIsBounded) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::tflite_refusals_test

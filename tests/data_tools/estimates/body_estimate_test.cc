@@ -11,7 +11,7 @@
 #include "bodyloom/geometry/body/posed_body.h"
 #include "tests/data_tools/estimates/estimate_files.h"
 
-namespace bodyloom {
+namespace bodyloom::body_estimate_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -140,4 +140,4 @@ TEST(BodyEstimate, FindsThePersonOfTheLandmarks) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::body_estimate_test

@@ -15,7 +15,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::load_estimate_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -233,4 +233,4 @@ TEST(LoadEstimate, EveryTruncationIsAnError) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::load_estimate_test

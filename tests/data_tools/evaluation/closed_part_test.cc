@@ -13,7 +13,7 @@
 
 #include "tests/support/meshes.h"
 
-namespace bodyloom {
+namespace bodyloom::closed_part_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -194,4 +194,4 @@ TEST(ClosedPart, NothingHoldsNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::closed_part_test

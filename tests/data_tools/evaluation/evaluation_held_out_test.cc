@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::evaluation_held_out_test {
 namespace {
 
 constexpr int kFrames = 10;
@@ -240,4 +240,4 @@ TEST(EvaluationTriangulationTest, OneRayParallelRaysAndPointsBehindAreRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::evaluation_held_out_test

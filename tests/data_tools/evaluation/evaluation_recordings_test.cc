@@ -17,7 +17,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::evaluation_recordings_test {
 namespace {
 
 const std::string kShared = SharedDir();
@@ -185,4 +185,4 @@ TEST(EvaluationRecordingsTest, Pose2SimTriangulatesAndScores) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::evaluation_recordings_test

@@ -16,7 +16,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::evaluation_truth_test {
 namespace {
 
 constexpr int kFrames = 12;
@@ -244,4 +244,4 @@ TEST(EvaluationTruthTest, TableAndJsonHoldEveryValue) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::evaluation_truth_test

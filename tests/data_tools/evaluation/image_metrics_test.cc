@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bodyloom {
+namespace bodyloom::image_metrics_test {
 namespace {
 
 using ::testing::DoubleEq;
@@ -134,4 +134,4 @@ TEST(ImageMetrics, TheRimIsAsWideOnBothSidesOfTheContour) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::image_metrics_test

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace bodyloom {
+namespace bodyloom::metrics_cramer_rao_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -167,4 +167,4 @@ TEST(CramerRaoTest, BrokenContractsThrow) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::metrics_cramer_rao_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace bodyloom {
+namespace bodyloom::metrics_image_test {
 namespace {
 
 constexpr double kTolerance = 1e-12;
@@ -156,4 +156,4 @@ TEST(MetricsImageTest, BrokenContractsThrow) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::metrics_image_test

@@ -9,7 +9,7 @@
 
 #include "bodyloom/geometry/math/rotation.h"
 
-namespace bodyloom {
+namespace bodyloom::metrics_test {
 namespace {
 
 constexpr double kTolerance = 1e-12;
@@ -288,4 +288,4 @@ TEST(MetricsTest, BrokenContractsThrow) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::metrics_test

@@ -12,7 +12,7 @@
 #include "bodyloom/render/image/palette.h"
 #include "tests/data_tools/motion/motion_support.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_quality_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -167,4 +167,4 @@ TEST(MotionSheet, SeenFromTheLeftTheRaisedFootIsInFront) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_quality_test

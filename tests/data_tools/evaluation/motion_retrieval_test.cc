@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "tests/data_tools/evaluation/short_turning_clip.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_retrieval_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -112,4 +112,4 @@ TEST(MotionSimilarity, FramesWithoutAResultHaveNone) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_retrieval_test

@@ -13,7 +13,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::pseudo_truth_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -132,4 +132,4 @@ TEST(PseudoTruth, ProjectionErrorOfASidestepIsItsAngle) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pseudo_truth_test

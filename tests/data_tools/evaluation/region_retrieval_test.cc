@@ -10,7 +10,7 @@
 #include "bodyloom/geometry/scene/observations.h"
 #include "tests/data_tools/evaluation/short_turning_clip.h"
 
-namespace bodyloom {
+namespace bodyloom::region_retrieval_test {
 namespace {
 
 TEST(RegionRetrieval, RegionsAreDisjointPartsOfTheAtlas) {
@@ -86,4 +86,4 @@ TEST(RegionRetrieval, FramesThatSayNothingAreNeitherAskedNorFound) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::region_retrieval_test

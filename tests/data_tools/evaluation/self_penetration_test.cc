@@ -16,7 +16,7 @@
 #include "bodyloom/geometry/body/posed_body.h"
 #include "tests/support/meshes.h"
 
-namespace bodyloom {
+namespace bodyloom::self_penetration_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -483,4 +483,4 @@ TEST(SelfPenetration, LostFramesAreLeftOutAndWrongArgumentsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::self_penetration_test

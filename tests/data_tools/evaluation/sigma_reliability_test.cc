@@ -10,7 +10,7 @@
 #include "bodyloom/data_tools/body/builtin_body.h"
 #include "bodyloom/geometry/scene/observations.h"
 
-namespace bodyloom {
+namespace bodyloom::sigma_reliability_test {
 namespace {
 
 std::vector<JudgedSigma> Drawn(int count, double stated_over_true) {
@@ -88,4 +88,4 @@ TEST(SigmaReliability, JointsAreComparedAboutTheHips) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::sigma_reliability_test

@@ -9,7 +9,7 @@
 
 #include "bodyloom/data_tools/evaluation/ssim_rows_simd.h"
 
-namespace bodyloom {
+namespace bodyloom::ssim_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -253,4 +253,4 @@ TEST(Ssim, RefusesWhatItCannotCompare) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::ssim_test

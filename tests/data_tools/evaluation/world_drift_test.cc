@@ -10,7 +10,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::world_drift_test {
 namespace {
 
 constexpr int kFrames = 60;  // at 20 a second
@@ -68,4 +68,4 @@ TEST(WorldDrift, FeetThatStandAreSeenToSlide) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::world_drift_test

@@ -13,7 +13,7 @@
 #include "bodyloom/data_tools/motion/bvh_writer.h"
 #include "tests/data_tools/export/exported_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::bvh_rig_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -98,4 +98,4 @@ TEST(BvhRig, JointsAreWhereTheyAreUnderEveryRigsNames) {
   EXPECT_THROW(BvhRigFromString("rigify"), std::invalid_argument);
 }
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::bvh_rig_test

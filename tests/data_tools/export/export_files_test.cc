@@ -22,7 +22,7 @@
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::export_files_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -326,4 +326,4 @@ TEST(Amass, SmplxFormHasWhatRetargetersRead) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::export_files_test

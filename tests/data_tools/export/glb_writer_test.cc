@@ -10,7 +10,7 @@
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/export/gltf_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::glb_writer_test {
 namespace {
 
 /// Largest distance between the file's vertices and the body's, where `key` shows frame t.
@@ -162,4 +162,4 @@ TEST(SkinnedMesh, KeepsSeamsAndWeights) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::glb_writer_test

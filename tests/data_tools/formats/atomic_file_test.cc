@@ -12,7 +12,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::atomic_file_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -96,4 +96,4 @@ TEST(AtomicPath, CommitMovesAndDestructionCleansUp) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::atomic_file_test

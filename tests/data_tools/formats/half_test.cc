@@ -7,7 +7,7 @@
 #include <bit>
 #include <cmath>
 
-namespace bodyloom {
+namespace bodyloom::half_test {
 namespace {
 
 // By the definition, for every number there is: (−1)^s · 2^(e − 15) · (1 + f / 1024), without the 1 for e = 0.
@@ -27,4 +27,4 @@ TEST(Half, EveryValue) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::half_test

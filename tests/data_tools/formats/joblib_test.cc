@@ -6,7 +6,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/joblib_stream.h"
 
-namespace bodyloom {
+namespace bodyloom::joblib_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -122,4 +122,4 @@ TEST(Joblib, AClassThatIsNamedButNotAnArrayIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::joblib_test

@@ -9,7 +9,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::json_reader_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -91,4 +91,4 @@ TEST(JsonReader, ErrorsNameThePlace) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::json_reader_test

@@ -12,7 +12,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::mapped_npy_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -69,4 +69,4 @@ TEST(MappedNpy, SaysWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::mapped_npy_test

@@ -14,7 +14,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::npy_stream_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -133,4 +133,4 @@ TEST(NpyStream, MayHaveNoRecords) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::npy_stream_test

@@ -15,7 +15,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::npz_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -308,4 +308,4 @@ TEST(ElementType, ParsesOnlyPlainTypes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::npz_test

@@ -11,7 +11,7 @@
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::pickle_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -340,4 +340,4 @@ TEST(Pickle, ReadsRealMotionFiles) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pickle_test

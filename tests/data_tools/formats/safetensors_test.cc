@@ -7,7 +7,7 @@
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::safetensors_test {
 namespace {
 
 using pickle_writer::LittleEndian;
@@ -154,4 +154,4 @@ TEST(Safetensors, TruncationAtEveryByteIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::safetensors_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::sha256_test {
 namespace {
 
 std::string DigestOf(std::string_view bytes, size_t piece = 1 << 20) {
@@ -82,4 +82,4 @@ TEST(Sha256, AFolderIsItsFilesWhereverItLies) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::sha256_test

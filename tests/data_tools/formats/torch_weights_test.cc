@@ -11,7 +11,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/formats/torch_stream.h"
 
-namespace bodyloom {
+namespace bodyloom::torch_weights_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -182,4 +182,4 @@ TEST(TorchWeights, TruncationAtEveryByteIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::torch_weights_test

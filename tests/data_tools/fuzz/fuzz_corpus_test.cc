@@ -7,7 +7,7 @@
 #include "tests/fuzz/fuzz_text_targets.h"
 #include "tests/fuzz/run_mutations.h"
 
-namespace bodyloom::fuzz {
+namespace bodyloom::fuzz::fuzz_corpus_test {
 namespace {
 
 TEST(FuzzCorpus, Npz) { RunMutations("npz", AcceptsNpz, 4000); }
@@ -43,4 +43,4 @@ TEST(FuzzCorpus, KeypointOutputs) { RunMutations("keypoint_outputs", AcceptsKeyp
 TEST(FuzzCorpus, Cage) { RunMutations("cage", AcceptsCage, 4000); }
 
 }  // namespace
-}  // namespace bodyloom::fuzz
+}  // namespace bodyloom::fuzz::fuzz_corpus_test

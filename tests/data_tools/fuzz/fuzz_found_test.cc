@@ -10,7 +10,7 @@
 #include "tests/fuzz/fuzz_array_targets.h"
 #include "tests/fuzz/fuzz_file_targets.h"
 
-namespace bodyloom::fuzz {
+namespace bodyloom::fuzz::fuzz_found_test {
 namespace {
 
 using testing::HasSubstr;
@@ -101,4 +101,4 @@ TEST(FuzzFound, IndicesThatAreNoWholeNumbers) {
 }
 
 }  // namespace
-}  // namespace bodyloom::fuzz
+}  // namespace bodyloom::fuzz::fuzz_found_test

@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/run_mutations.h"
 
-namespace bodyloom::fuzz {
+namespace bodyloom::fuzz::fuzz_run_test {
 namespace {
 
 TEST(FuzzCorpus, RunConfig) { RunMutations("run_config", AcceptsRunConfig, 2000); }
@@ -36,4 +36,4 @@ TEST(RunConfigNumbers, OutOfRangeIsRefusedBeforeItIsMultiplied) {
 }
 
 }  // namespace
-}  // namespace bodyloom::fuzz
+}  // namespace bodyloom::fuzz::fuzz_run_test

@@ -18,7 +18,7 @@
 #include "bodyloom/tracking/lifter/lifter_reading.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::lifter_record_test {
 namespace {
 
 const std::string kRun = SourceDir() + "/assets/lifter/run";
@@ -87,4 +87,4 @@ TEST(LifterRecord, TheWeightsMakeTheErrorsThatTheRunWroteDown) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifter_record_test

@@ -13,7 +13,7 @@
 #include "bodyloom/tracking/lifter/lifter_input.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::lifter_weights_io_test {
 namespace {
 
 LifterWeights SmallWeights() {
@@ -139,4 +139,4 @@ TEST(BuiltinLifter, ReadsWhatTheTrackerFeedsIt) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifter_weights_io_test

@@ -14,7 +14,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/random_picture_unet.h"
 
-namespace bodyloom {
+namespace bodyloom::parser_weights_io_test {
 namespace {
 
 std::string BytesOfParser(const ParserWeights& weights) {
@@ -92,4 +92,4 @@ TEST(ParserWeightsIo, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::parser_weights_io_test

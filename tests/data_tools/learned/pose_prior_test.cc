@@ -14,7 +14,7 @@
 #include "bodyloom/geometry/math/direction_bins.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::pose_prior_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -146,4 +146,4 @@ TEST(DirectionBins, NearestIsWithinABinsWidth) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pose_prior_test

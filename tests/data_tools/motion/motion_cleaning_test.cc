@@ -9,7 +9,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "tests/data_tools/motion/motion_support.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_cleaning_test {
 namespace {
 
 constexpr int kLeftHip = 1, kSpine1 = 3, kLeftAnkle = 7, kLeftToe = 10;
@@ -124,4 +124,4 @@ TEST(MotionCleaning, OneFrameAndWrongMotions) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_cleaning_test

@@ -25,7 +25,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_files_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -308,4 +308,4 @@ TEST(SmplRest, HingesBendTheNaturalWay) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_files_test

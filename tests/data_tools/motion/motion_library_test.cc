@@ -21,7 +21,7 @@
 #include "tests/data_tools/motion/motion_support.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_library_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -298,4 +298,4 @@ TEST_F(RealLibrary, EveryClipIsNamedAndNoPerformerIsInBoth) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_library_test

@@ -18,7 +18,7 @@
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_readers_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -362,4 +362,4 @@ TEST(LoadMotion, UnknownFilesSayWhatIsRead) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_readers_test

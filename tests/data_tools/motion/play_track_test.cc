@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace bodyloom {
+namespace bodyloom::play_track_test {
 namespace {
 
 /// One joint that turns about z by 0.1 rad a frame while it moves along x by 0.2 m a frame; 25 frames a second.
@@ -63,4 +63,4 @@ TEST(PlayTrack, RefusesGapsAndWildSpeeds) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::play_track_test

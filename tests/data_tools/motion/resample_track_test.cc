@@ -10,7 +10,7 @@
 
 #include "bodyloom/data_tools/motion/motion_tools.h"
 
-namespace bodyloom {
+namespace bodyloom::resample_track_test {
 namespace {
 
 /// One joint that turns about z at 2 rad/s while it moves along x at 3 m/s, seen at these times.
@@ -130,4 +130,4 @@ TEST(FrameRateWithoutGaps, PausesDoNotCount) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::resample_track_test

@@ -20,7 +20,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::retarget_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -335,4 +335,4 @@ TEST_F(RealMotion, EveryClipLoadsAndMovesLikeAPerson) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::retarget_test

@@ -13,7 +13,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::track_io_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -330,4 +330,4 @@ TEST(TrackIo, BodiesWithoutLandmarksHaveNoCocoMember) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_io_test

@@ -11,7 +11,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::colmap_reader_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -155,4 +155,4 @@ TEST(ColmapReader, RefusesBinaryFilesThatEndAnywhere) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::colmap_reader_test

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace bodyloom {
+namespace bodyloom::cut_frames_test {
 namespace {
 
 TEST(CutFrames, KeepsTheStretchWithItsTimes) {
@@ -33,4 +33,4 @@ TEST(CutFrames, KeepsTheStretchWithItsTimes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::cut_frames_test

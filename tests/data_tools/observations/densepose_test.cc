@@ -20,7 +20,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::densepose_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -324,4 +324,4 @@ TEST(DensePose, WrongPathsAndBodies) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::densepose_test

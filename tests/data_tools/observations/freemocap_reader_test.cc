@@ -9,7 +9,7 @@
 #include "bodyloom/data_tools/observations/load_detections.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
-namespace bodyloom {
+namespace bodyloom::freemocap_reader_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -76,4 +76,4 @@ TEST(FreeMocap, SaysWhatTheArrayIs) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::freemocap_reader_test

@@ -8,7 +8,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::load_camera_path_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -107,4 +107,4 @@ TEST_F(CameraPathFile, RefusesWhatIsNoPath) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::load_camera_path_test

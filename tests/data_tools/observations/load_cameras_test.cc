@@ -11,7 +11,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::load_cameras_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -194,4 +194,4 @@ TEST(RealCameras, EverySettingLoads) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::load_cameras_test

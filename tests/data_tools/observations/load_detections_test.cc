@@ -17,7 +17,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/stick_person.h"
 
-namespace bodyloom {
+namespace bodyloom::load_detections_test {
 namespace {
 
 using ::testing::AllOf;
@@ -358,4 +358,4 @@ TEST_F(RealDetections, TfjsPose) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::load_detections_test

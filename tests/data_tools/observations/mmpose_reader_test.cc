@@ -11,7 +11,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/stick_person.h"
 
-namespace bodyloom {
+namespace bodyloom::mmpose_reader_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(Mmpose, RefusesWhatItIsNot) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::mmpose_reader_test

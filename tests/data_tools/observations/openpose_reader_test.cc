@@ -10,7 +10,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/stick_person.h"
 
-namespace bodyloom {
+namespace bodyloom::openpose_reader_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -103,4 +103,4 @@ TEST(OpenPose, EveryTruncationIsAnError) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::openpose_reader_test

@@ -8,7 +8,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::people_npz_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -98,4 +98,4 @@ TEST(PeopleNpz, WritingChecksItsOwnData) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::people_npz_test

@@ -10,7 +10,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/stick_person.h"
 
-namespace bodyloom {
+namespace bodyloom::people_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -112,4 +112,4 @@ TEST(FrameNumbers, Grid) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::people_test

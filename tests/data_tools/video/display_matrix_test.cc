@@ -14,7 +14,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"
 
-namespace bodyloom {
+namespace bodyloom::display_matrix_test {
 namespace {
 
 /// a, b, c, d of the turns and mirror images of a square.
@@ -101,4 +101,4 @@ TEST(DisplayMatrix, NotedRotations) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::display_matrix_test

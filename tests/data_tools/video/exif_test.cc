@@ -11,7 +11,7 @@
 #include "tests/data_tools/video/clip_maker.h"
 #include "tests/data_tools/video/exif_maker.h"
 
-namespace bodyloom {
+namespace bodyloom::exif_test {
 namespace {
 
 TEST(Exif, FocalLengthForFilm) {
@@ -58,4 +58,4 @@ TEST(Exif, OfAPhotographAndOfAQuickTimeVideo) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::exif_test

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::frame_clock_test {
 namespace {
 
 constexpr double kFrame = 0.04;
@@ -52,4 +52,4 @@ TEST(FrameClock, TimestampsAtTheEdgeOfTheirRange) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::frame_clock_test

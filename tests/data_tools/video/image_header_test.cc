@@ -15,7 +15,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::image_header_test {
 namespace {
 
 using namespace std::string_literals;
@@ -122,4 +122,4 @@ TEST(ImageHeader, AFewBytesDoNotTakeTheMemoryOfABillionPixels) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::image_header_test

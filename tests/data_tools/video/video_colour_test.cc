@@ -12,7 +12,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"
 
-namespace bodyloom {
+namespace bodyloom::video_colour_test {
 namespace {
 
 struct Ycbcr {
@@ -194,4 +194,4 @@ TEST(VideoColour, GreyAndRgbKeepEveryLevel) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::video_colour_test

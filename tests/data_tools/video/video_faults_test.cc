@@ -16,7 +16,7 @@
 #include "tests/data_tools/video/clip_maker.h"
 #include "tests/fuzz/run_mutations.h"
 
-namespace bodyloom {
+namespace bodyloom::video_faults_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -263,4 +263,4 @@ TEST(VideoFaults, GarbageOfEveryKindNeverCrashes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::video_faults_test

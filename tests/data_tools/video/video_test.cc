@@ -21,7 +21,7 @@
 #include "tests/data_tools/video/exif_maker.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::video_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -285,4 +285,4 @@ TEST(Video, ReadsARealPhoneVideo) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::video_test

@@ -13,7 +13,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"
 
-namespace bodyloom {
+namespace bodyloom::video_times_test {
 namespace {
 
 constexpr int kFrames = 24;
@@ -209,4 +209,4 @@ TEST(VideoTimes, SkipToATime) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::video_times_test

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace bodyloom {
+namespace bodyloom::callbacks_test {
 namespace {
 
 TEST(PipelineCallbacks, WithoutAnyAJobRunsThrough) {
@@ -41,4 +41,4 @@ TEST(PipelineCallbacks, WorkAndLinesArrive) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::callbacks_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::parallel_phases_test {
 namespace {
 
 TEST(ParallelPhases, APhaseSeesAllOfTheOneBefore) {
@@ -53,4 +53,4 @@ TEST(ParallelPhases, AnExceptionEndsThemAll) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::parallel_phases_test

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::parallel_test {
 namespace {
 
 TEST(ParallelFor, EveryIndexOnce) {
@@ -106,4 +106,4 @@ TEST(ParallelFor, WorksInAForkedProcess) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::parallel_test

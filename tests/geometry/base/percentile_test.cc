@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::percentile_test {
 namespace {
 
 TEST(Percentile, InterpolatesLikeNumpy) {
@@ -21,4 +21,4 @@ TEST(Percentile, InterpolatesLikeNumpy) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::percentile_test

@@ -15,7 +15,7 @@
 #include "tests/geometry/random_body.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::body_model_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -219,4 +219,4 @@ TEST(BodyModel, DenseCorrectivesBecomeBlocks) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::body_model_test

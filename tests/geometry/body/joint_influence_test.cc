@@ -5,7 +5,7 @@
 
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::joint_influence_test {
 namespace {
 
 TEST(JointInfluence, StrongestIsTheLargestWeight) {
@@ -30,4 +30,4 @@ TEST(JointInfluence, BelowTheRootIsEverythingAndBelowAWristTheHand) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::joint_influence_test

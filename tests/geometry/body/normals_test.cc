@@ -17,7 +17,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::normals_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -348,4 +348,4 @@ TEST(MeshAdjacency, FindsTheFaceAcrossEveryEdge) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::normals_test

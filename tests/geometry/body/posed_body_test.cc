@@ -17,7 +17,7 @@
 #include "tests/geometry/slow_body.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::posed_body_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -253,4 +253,4 @@ TEST(PosedBody, SmoothEnoughForDifferenceQuotients) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::posed_body_test

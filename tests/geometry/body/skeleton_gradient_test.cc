@@ -11,7 +11,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::skeleton_gradient_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -105,4 +105,4 @@ TEST(JointJacobian, IsADifference) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::skeleton_gradient_test

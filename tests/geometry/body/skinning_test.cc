@@ -17,7 +17,7 @@
 #include "tests/geometry/random_body.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::skinning_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -306,4 +306,4 @@ TEST(Skinning, BrokenContractsAreNamed) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::skinning_test

@@ -20,7 +20,7 @@
 #include "tests/geometry/slow_body.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::surface_jacobian_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -293,4 +293,4 @@ TEST(SurfaceJacobian, BrokenContractsAreNamed) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::surface_jacobian_test

@@ -13,7 +13,7 @@
 #include "bodyloom/geometry/uv_maps/uv_texels.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::body_with_garment_test {
 namespace {
 
 class BodyWithGarmentTest : public ::testing::Test {
@@ -99,4 +99,4 @@ TEST_F(BodyWithGarmentTest, ClothLandsInTheLastRows) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::body_with_garment_test

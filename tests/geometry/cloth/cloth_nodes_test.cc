@@ -11,7 +11,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::cloth_nodes_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -125,4 +125,4 @@ TEST(ClothNodes, RefuseWhatTheyCannotBeOn) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::cloth_nodes_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bodyloom {
+namespace bodyloom::cloth_simulation_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -409,4 +409,4 @@ TEST(ClothSimulation, ChecksItsContract) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::cloth_simulation_test

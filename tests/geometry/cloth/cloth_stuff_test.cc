@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace bodyloom {
+namespace bodyloom::cloth_stuff_test {
 namespace {
 
 TEST(ClothStuff, HasANameForEach) {
@@ -45,4 +45,4 @@ TEST(ClothStuff, KeepsTheCutAndWhatIsFinerAlready) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::cloth_stuff_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::loose_garment_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -54,4 +54,4 @@ TEST(LooseGarment, IsSewnAsItsPatternSays) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::loose_garment_test

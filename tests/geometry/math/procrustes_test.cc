@@ -10,7 +10,7 @@
 
 #include "bodyloom/geometry/math/rotation.h"
 
-namespace bodyloom {
+namespace bodyloom::procrustes_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -171,4 +171,4 @@ TEST(ProcrustesTest, BrokenContractsThrow) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::procrustes_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::rotation_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -289,4 +289,4 @@ TEST(Rotation, BetweenDirections) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::rotation_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/meshes.h"
 
-namespace bodyloom {
+namespace bodyloom::mesh_check_test {
 namespace {
 
 TestMesh MeshOf(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector3i>& faces) {
@@ -304,4 +304,4 @@ TEST(MeshCheck, OpenMeshAgreesOnRandomDamage) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::mesh_check_test

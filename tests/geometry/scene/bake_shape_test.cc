@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::bake_shape_test {
 namespace {
 
 const Eigen::VectorXd kShape = (Eigen::VectorXd(6) << 1.2, -0.7, 0.5, 0.3, -1.1, 0.9).finished();
@@ -114,4 +114,4 @@ TEST(BakeShape, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::bake_shape_test

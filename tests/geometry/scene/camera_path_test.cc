@@ -10,7 +10,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::camera_path_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -122,4 +122,4 @@ TEST(CameraPath, ATrackInItsCamerasIsWhatTheySaw) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::camera_path_test

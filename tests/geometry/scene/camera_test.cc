@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::camera_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -232,4 +232,4 @@ TEST(Camera, NamesAndConstruction) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::camera_test

@@ -8,7 +8,7 @@
 #include "bodyloom/data_tools/descriptors/person_frames.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::freeze_track_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -75,4 +75,4 @@ TEST(FreezeTrack, AFrozenFrameMovesAsItDid) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::freeze_track_test

@@ -8,7 +8,7 @@
 
 #include "bodyloom/geometry/scene/observations.h"
 
-namespace bodyloom {
+namespace bodyloom::label_image_test {
 namespace {
 
 void ExpectEqual(const LabelImage& a, const LabelImage& b) {
@@ -67,4 +67,4 @@ TEST(PartLabelSequence, PartsOfAFrameAreThoseOfItsPixels) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::label_image_test

@@ -13,7 +13,7 @@
 #include "bodyloom/render/uv_maps/posed_track.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::shape_track_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -157,4 +157,4 @@ TEST(ShapeTrack, RefusesShapesOfOtherBodies) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::shape_track_test

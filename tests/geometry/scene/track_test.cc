@@ -9,7 +9,7 @@
 
 #include "bodyloom/geometry/scene/observations.h"
 
-namespace bodyloom {
+namespace bodyloom::track_test {
 namespace {
 
 TEST(Track, CameraOfAFrame) {
@@ -43,4 +43,4 @@ TEST(Observations, CocoNames) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace bodyloom {
+namespace bodyloom::world_frame_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -66,4 +66,4 @@ TEST(WorldFrame, SourcesHaveNames) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::world_frame_test

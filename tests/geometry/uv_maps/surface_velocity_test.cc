@@ -17,7 +17,7 @@
 #include "tests/geometry/random_body.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::surface_velocity_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -429,4 +429,4 @@ TEST(SurfaceVelocity, SameBytesForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::surface_velocity_test

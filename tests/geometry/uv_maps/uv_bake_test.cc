@@ -14,7 +14,7 @@
 #include "bodyloom/geometry/uv_maps/uv_bake_simd.h"
 #include "tests/support/meshes.h"
 
-namespace bodyloom {
+namespace bodyloom::uv_bake_test {
 namespace {
 
 std::vector<float> RandomValues(size_t n, uint32_t seed) {
@@ -150,4 +150,4 @@ TEST(UvBake, RefusesWrongSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::uv_bake_test

@@ -14,7 +14,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::uv_texels_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -302,4 +302,4 @@ TEST(UvTexels, OfAMapOfOneTexel) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::uv_texels_test

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-namespace bodyloom {
+namespace bodyloom::runtime_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -65,4 +65,4 @@ TEST(NeuralRuntime, ACardThatIsNotThereIsSaid) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::runtime_test

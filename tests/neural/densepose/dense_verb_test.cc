@@ -20,7 +20,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::dense_verb_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -135,4 +135,4 @@ TEST_F(DenseVerb, FilesThatAreNoModelLeaveNothingBehind) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::dense_verb_test

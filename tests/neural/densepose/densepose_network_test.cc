@@ -15,7 +15,7 @@
 #include "tests/neural/densepose/scripted_densepose.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::densepose_network_test {
 namespace {
 
 using ::testing::AllOf;
@@ -235,4 +235,4 @@ TEST_F(DensePoseFile, FifteenCoarseChannelsAreAPersonWhereAnyBodyPartWins) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::densepose_network_test

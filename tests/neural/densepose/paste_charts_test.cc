@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::paste_charts_test {
 namespace {
 
 constexpr int kRows = 8, kColumns = 10, kCells = kRows * kColumns;
@@ -152,4 +152,4 @@ TEST(PasteCharts, EmptyAndEndlessBoxesHoldNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::paste_charts_test

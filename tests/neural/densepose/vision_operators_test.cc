@@ -11,7 +11,7 @@
 #include <sstream>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::vision_operators_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -128,4 +128,4 @@ TEST(VisionOperators, SavedProgramsThatCallTorchvisionRun) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::vision_operators_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::carry_colours_test {
 namespace {
 
 using torch::Tensor;
@@ -51,4 +51,4 @@ TEST(CarryColours, ALabelThatIsKnownNowhereTakesWhatIsNearest) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::carry_colours_test

@@ -16,7 +16,7 @@
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/neural/metrics/named_features.h"
 
-namespace bodyloom {
+namespace bodyloom::guided_maps_test {
 namespace {
 
 TEST(BodyPartMap, LeftAndRightAreTheSameLimb) {
@@ -382,4 +382,4 @@ TEST(GuidedScores, StabilityIsWithinAPerson) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::guided_maps_test

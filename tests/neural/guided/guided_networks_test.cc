@@ -15,7 +15,7 @@
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/support/gradient_check.h"
 
-namespace bodyloom {
+namespace bodyloom::guided_networks_test {
 namespace {
 
 using torch::Tensor;
@@ -355,4 +355,4 @@ TEST(GuidedModel, ACroppedTargetSeesTheSameCellsOfTheSource) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::guided_networks_test

@@ -19,7 +19,7 @@
 #include "tests/neural/training/last_metrics.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::guided_training_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -361,4 +361,4 @@ TEST(GuidedTraining, DoesTheSameOnACard) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::guided_training_test

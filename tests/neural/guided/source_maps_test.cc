@@ -11,7 +11,7 @@
 #include "bodyloom/render/garment/clothes_extent.h"
 #include "tests/neural/guided/guided_toy.h"
 
-namespace bodyloom {
+namespace bodyloom::source_maps_test {
 namespace {
 
 constexpr int kTexels = kToyTexels * kToyTexels;
@@ -332,4 +332,4 @@ TEST(ClothesExtent, NeedsLabels) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::source_maps_test

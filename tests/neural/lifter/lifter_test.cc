@@ -14,7 +14,7 @@
 #include "bodyloom/neural/lifter/train_lifter.h"
 #include "bodyloom/tracking/lifter/lifter_network.h"
 
-namespace bodyloom {
+namespace bodyloom::lifter_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -341,4 +341,4 @@ TEST_F(LifterTraining, ExamplesOfTheWrongSizeAreRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifter_test

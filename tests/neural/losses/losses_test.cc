@@ -12,7 +12,7 @@
 #include "bodyloom/neural/losses/image_losses.h"
 #include "tests/support/gradient_check.h"
 
-namespace bodyloom {
+namespace bodyloom::losses_test {
 namespace {
 
 using torch::Tensor;
@@ -262,4 +262,4 @@ TEST(ContextualLoss, StaysFiniteWhereThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::losses_test

@@ -16,7 +16,7 @@
 #include "bodyloom/neural/networks/vgg.h"
 #include "tests/neural/metrics/named_features.h"
 
-namespace bodyloom {
+namespace bodyloom::metrics_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -264,4 +264,4 @@ TEST(ClassOverlap, CountsWhatBothSay) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::metrics_test

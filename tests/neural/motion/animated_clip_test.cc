@@ -13,7 +13,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::animated_clip_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -106,4 +106,4 @@ TEST_F(AnimatedClips, AFasterTrackIsShownAtTheRunsRate) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::animated_clip_test

@@ -17,7 +17,7 @@
 #include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_data_test {
 namespace {
 
 constexpr int kFrames = 4, kSide = 160;
@@ -91,4 +91,4 @@ TEST_F(MotionDataOfAClip, LabelsAndNormalsOfTheMaskAreNearThoseOfTheTruth) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_data_test

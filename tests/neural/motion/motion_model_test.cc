@@ -14,7 +14,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_model_test {
 namespace {
 
 using torch::Tensor;
@@ -153,4 +153,4 @@ TEST(MotionModel, IsWhatItsCardsSay) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_model_test

@@ -10,7 +10,7 @@
 #include "bodyloom/neural/motion/motion_scorer.h"
 #include "tests/neural/motion/toy_motion.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_scorer_test {
 namespace {
 
 TEST(MotionScores, AreZeroForTheTruthAndWhatTheyShouldBeBesideIt) {
@@ -84,4 +84,4 @@ TEST(MotionScores, WholeWindowsAreComparedWhereTheyWere) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_scorer_test

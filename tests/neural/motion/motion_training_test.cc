@@ -26,7 +26,7 @@
 #include "tests/neural/training/last_metrics.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_training_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -340,4 +340,4 @@ TEST(MotionTraining, DoesTheSameOnACard) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_training_test

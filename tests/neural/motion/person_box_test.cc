@@ -13,7 +13,7 @@
 #include "bodyloom/neural/training/checkpoint_file.h"
 #include "tests/neural/motion/toy_motion.h"
 
-namespace bodyloom {
+namespace bodyloom::person_box_test {
 namespace {
 
 using torch::Tensor;
@@ -167,4 +167,4 @@ TEST(PersonBox, ATrainingInBoxesLearnsAndIsResumedExactly) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::person_box_test

@@ -8,7 +8,7 @@
 #include "bodyloom/neural/motion/roll_out.h"
 #include "tests/neural/motion/toy_motion.h"
 
-namespace bodyloom {
+namespace bodyloom::roll_out_test {
 namespace {
 
 TEST(RollOut, KeepsWhatDoesNotChangeAndSaysTheSame) {
@@ -69,4 +69,4 @@ TEST(ClothesReach, IsTheLongerOfBothDistances) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::roll_out_test

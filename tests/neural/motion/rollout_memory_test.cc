@@ -6,7 +6,7 @@
 #include "bodyloom/neural/base/image_tensor.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::rollout_memory_test {
 namespace {
 
 using torch::Tensor;
@@ -114,4 +114,4 @@ TEST(RolloutMemory, ACheckpointOfOtherRolloutsIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::rollout_memory_test

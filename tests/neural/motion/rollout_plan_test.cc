@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace bodyloom {
+namespace bodyloom::rollout_plan_test {
 namespace {
 
 const std::vector<FrameRange> kRanges = {{10, 30}, {50, 51}, {60, 90}};
@@ -93,4 +93,4 @@ TEST(RolloutPlan, RefusesEmptyRangesAndNoRollouts) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::rollout_plan_test

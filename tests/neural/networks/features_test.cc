@@ -14,7 +14,7 @@
 #include "bodyloom/neural/networks/unet.h"
 #include "bodyloom/neural/networks/vgg.h"
 
-namespace bodyloom {
+namespace bodyloom::features_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -243,4 +243,4 @@ TEST(ImageTensor, RoundTrip) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::features_test

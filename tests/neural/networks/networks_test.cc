@@ -13,7 +13,7 @@
 #include "bodyloom/neural/networks/uv_sampler.h"
 #include "tests/support/gradient_check.h"
 
-namespace bodyloom {
+namespace bodyloom::networks_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -335,4 +335,4 @@ TEST(UvSampler, WhatLiesOffTheBodyDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::networks_test

@@ -13,7 +13,7 @@
 #include "bodyloom/tracking/detection/inference/picture_unet_runner.h"
 #include "tests/support/random_picture_unet.h"
 
-namespace bodyloom {
+namespace bodyloom::picture_unet_module_test {
 namespace {
 
 constexpr PictureUnetPlanes kFiveToThree = {5, 3};
@@ -73,4 +73,4 @@ TEST(PictureUnetModule, RefusesOtherSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::picture_unet_module_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/gradient_check.h"
 
-namespace bodyloom {
+namespace bodyloom::pull_push_test {
 namespace {
 
 using torch::Tensor;
@@ -107,4 +107,4 @@ TEST(PullPush, DerivativesAgreeWithDifferences) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pull_push_test

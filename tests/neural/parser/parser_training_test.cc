@@ -12,7 +12,7 @@
 #include "bodyloom/geometry/base/hash_random.h"
 #include "bodyloom/neural/parser/train_parser.h"
 
-namespace bodyloom {
+namespace bodyloom::parser_training_test {
 namespace {
 
 constexpr uint8_t kTopHere = 1, kBottomHere = 2, kSkinHere = 5;
@@ -120,4 +120,4 @@ TEST(ParserTraining, RefusesWhatItCannotUse) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::parser_training_test

@@ -8,7 +8,7 @@
 
 #include "bodyloom/neural/base/device.h"
 
-namespace bodyloom {
+namespace bodyloom::picture_crops_test {
 namespace {
 
 constexpr int kPlanesHere = 4, kTruthHere = 1;
@@ -103,4 +103,4 @@ TEST(PictureCrops, BytesBecomeNumbers) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::picture_crops_test

@@ -11,7 +11,7 @@
 #include "bodyloom/render/texture/complete/body_part_map.h"
 #include "tests/neural/photo/toy_photos.h"
 
-namespace bodyloom {
+namespace bodyloom::face_box_test {
 namespace {
 
 TEST(FaceBox, OfABatchIsThatOfHeadsSeenFromTheFront) {
@@ -45,4 +45,4 @@ TEST(FaceBox, OfAPersonWhoTurns) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::face_box_test

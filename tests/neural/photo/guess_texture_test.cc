@@ -20,7 +20,7 @@
 #include "bodyloom/neural/training/checkpoint.h"
 #include "tests/neural/photo/toy_photo_training.h"
 
-namespace bodyloom {
+namespace bodyloom::guess_texture_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -312,4 +312,4 @@ TEST(GuessTexture, TrainsResumesAndRenders) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::guess_texture_test

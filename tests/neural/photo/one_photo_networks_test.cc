@@ -27,7 +27,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::one_photo_networks_test {
 namespace {
 
 using torch::Tensor;
@@ -372,4 +372,4 @@ TEST_F(PhotoByHeart, Discriminators) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::one_photo_networks_test

@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/synthesis/people/make_multi_person_dataset.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::people_data_test {
 namespace {
 
 class PeopleWithBodyErrors : public ::testing::Test {
@@ -60,4 +60,4 @@ TEST_F(PeopleWithBodyErrors, PicturesStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::people_data_test

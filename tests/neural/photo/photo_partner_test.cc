@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace bodyloom {
+namespace bodyloom::photo_partner_test {
 namespace {
 
 /// All partners that numbers in [0, 1) choose.
@@ -50,4 +50,4 @@ TEST(PhotoPartner, RefusesWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::photo_partner_test

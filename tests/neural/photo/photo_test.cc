@@ -18,7 +18,7 @@
 #include "tests/neural/photo/toy_photos.h"
 #include "tests/support/gradient_check.h"
 
-namespace bodyloom {
+namespace bodyloom::photo_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -486,4 +486,4 @@ TEST(PhotoScores, AreWhatTheyShouldBeBesideTheTruth) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::photo_test

@@ -20,7 +20,7 @@
 #include "tests/neural/photo/toy_photo_training.h"
 #include "tests/neural/training/last_metrics.h"
 
-namespace bodyloom {
+namespace bodyloom::photo_training_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -365,4 +365,4 @@ TEST(PhotoTraining, DoesTheSameOnACard) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::photo_training_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace bodyloom {
+namespace bodyloom::muon_test {
 namespace {
 
 using torch::Tensor;
@@ -68,4 +68,4 @@ TEST(Muon, GoesOnFromWhatItSaved) {
 TEST(Muon, RefusesVectors) { EXPECT_THROW(Muon({torch::zeros({4})}, {}), std::invalid_argument); }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::muon_test

@@ -16,7 +16,7 @@
 #include "bodyloom/neural/training/run_files.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::training_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -303,4 +303,4 @@ TEST_F(Checkpoints, NamesAndOptimizersAreChecked) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::training_test

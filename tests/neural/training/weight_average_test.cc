@@ -8,7 +8,7 @@
 
 #include "bodyloom/neural/training/optimizers.h"
 
-namespace bodyloom {
+namespace bodyloom::weight_average_test {
 namespace {
 
 void SetAll(torch::nn::Module* module, double value) {
@@ -64,4 +64,4 @@ TEST(WeightAverage, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::weight_average_test

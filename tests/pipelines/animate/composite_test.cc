@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::composite_test {
 namespace {
 
 PersonWindow WindowAt(int width, int height, const Eigen::Vector2i& corner, int picture_width, int picture_height) {
@@ -101,4 +101,4 @@ TEST(Background, AnotherShapeIsCutAndNotStretched) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::composite_test

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace bodyloom {
+namespace bodyloom::motion_scores_text_test {
 namespace {
 
 TEST(MotionScoresText, LeavesOutWhatWasNotMeasured) {
@@ -39,4 +39,4 @@ TEST(MotionScoresText, NamesTheNetworkThatMeasures) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_scores_text_test

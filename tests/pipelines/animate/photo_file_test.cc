@@ -17,7 +17,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/odd_pictures.h"
 
-namespace bodyloom {
+namespace bodyloom::photo_file_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -246,4 +246,4 @@ TEST(PersonSegmentation, TransparencyCountsBeforeColours) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::photo_file_test

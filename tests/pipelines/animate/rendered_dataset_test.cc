@@ -12,7 +12,7 @@
 #include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::rendered_dataset_test {
 namespace {
 
 /// A window of 3 × 2 pixels at (1, 1) of a picture of 6 × 4, and what networks predicted for it.
@@ -101,4 +101,4 @@ TEST(RenderedDataset, IsASinglePersonDatasetOnlyWhenFinished) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::rendered_dataset_test

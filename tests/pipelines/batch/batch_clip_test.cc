@@ -10,7 +10,7 @@
 #include "bodyloom/pipelines/track/track_clip.h"
 #include "tests/pipelines/batch/batch_fixture.h"
 
-namespace bodyloom {
+namespace bodyloom::batch_clip_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -198,4 +198,4 @@ TEST(TrackBatchClip, WritesWhatTrackWrites) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::batch_clip_test

@@ -10,7 +10,7 @@
 
 #include "bodyloom/geometry/base/callbacks.h"
 
-namespace bodyloom {
+namespace bodyloom::manifest_test {
 namespace {
 
 using ::testing::AllOf;
@@ -133,4 +133,4 @@ TEST(Shard, OtherTextsAreRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::manifest_test

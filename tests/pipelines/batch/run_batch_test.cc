@@ -11,7 +11,7 @@
 
 #include "tests/pipelines/batch/batch_fixture.h"
 
-namespace bodyloom {
+namespace bodyloom::run_batch_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -301,4 +301,4 @@ TEST_F(RunBatchTest, RefusesAFolderThatCannotBeOne) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::run_batch_test

@@ -10,7 +10,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/tracking/detection/masked_clip.h"
 
-namespace bodyloom {
+namespace bodyloom::cut_masks_test {
 namespace {
 
 /// The pictures in a folder, and coarse masks of the person in them.
@@ -88,4 +88,4 @@ TEST(CutMasks, CanBeStopped) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::cut_masks_test

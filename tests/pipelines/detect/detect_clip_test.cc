@@ -16,7 +16,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::detect_clip_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -184,4 +184,4 @@ TEST(DetectClip, PeopleAreDescribedInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::detect_clip_test

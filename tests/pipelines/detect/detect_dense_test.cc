@@ -18,7 +18,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::detect_dense_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -233,4 +233,4 @@ TEST_F(DetectDenseClip, FailuresLeaveNothingBehind) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::detect_dense_test

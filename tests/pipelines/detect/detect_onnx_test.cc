@@ -19,7 +19,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::detect_onnx_test {
 namespace {
 
 using ::testing::Contains;
@@ -167,4 +167,4 @@ TEST_F(OnnxClip, RunTracksEverybody) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::detect_onnx_test

@@ -15,7 +15,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 
-namespace bodyloom {
+namespace bodyloom::original_smoothing_test {
 namespace {
 
 /// Casiez, Roussel, Vogel, "1€ Filter", CHI 2012, as MediaPipe has it: the speed that opens the filter is relative to
@@ -102,4 +102,4 @@ TEST(OriginalSmoothing, GivesWhatWasPublishedForTheSquats) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::original_smoothing_test

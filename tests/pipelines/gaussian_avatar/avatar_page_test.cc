@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::avatar_page_test {
 namespace {
 
 TEST(AvatarPage, ShowsAsManyFramesAsBonesFitIn) {
@@ -23,4 +23,4 @@ TEST(AvatarPage, ShowsAsManyFramesAsBonesFitIn) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::avatar_page_test

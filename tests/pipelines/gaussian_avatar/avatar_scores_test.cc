@@ -8,7 +8,7 @@
 
 #include "bodyloom/data_tools/evaluation/ssim.h"
 
-namespace bodyloom {
+namespace bodyloom::avatar_scores_test {
 namespace {
 
 TEST(PictureLossAndScores, HaveOneSsim) {
@@ -94,4 +94,4 @@ TEST(AvatarScorer, WindowsShowThePersonOverBlack) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::avatar_scores_test

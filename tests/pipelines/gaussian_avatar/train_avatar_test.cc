@@ -29,7 +29,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/render/splat/same_bytes.h"
 
-namespace bodyloom {
+namespace bodyloom::train_avatar_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -500,4 +500,4 @@ TEST(FrameSpans, AreWhatIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::train_avatar_test

@@ -10,7 +10,7 @@
 
 #include "bodyloom/pipelines/page/report_page.h"
 
-namespace bodyloom {
+namespace bodyloom::clip_page_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -105,4 +105,4 @@ TEST(ClipPage, WhatDoesNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::clip_page_test

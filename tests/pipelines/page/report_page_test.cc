@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace bodyloom {
+namespace bodyloom::report_page_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -68,4 +68,4 @@ TEST(ReportPage, CurveOfDifferentLengthsIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::report_page_test

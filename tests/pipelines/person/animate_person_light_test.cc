@@ -17,7 +17,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::animate_person_light_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST_F(PersonInOtherLight, WhatCannotBeGivenIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::animate_person_light_test

@@ -24,7 +24,7 @@
 #include "tests/support/short_track.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::animate_person_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -236,4 +236,4 @@ TEST(PersonFolder, WhatIsMissingOrBrokenIsNamed) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::animate_person_test

@@ -13,7 +13,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::render_track_test {
 namespace {
 
 TEST(FrameRange, ReadsWhatUsersWrite) {
@@ -55,4 +55,4 @@ TEST(RenderTrack, AMovingCamerasPicturesShowTheBodyWhereThatCameraSawIt) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::render_track_test

@@ -12,7 +12,7 @@
 #include "bodyloom/pipelines/runs/run_config.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_run_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -142,4 +142,4 @@ TEST_F(MotionRuns, RefusesWhatIsNoShape) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_run_test

@@ -15,7 +15,7 @@
 #include "tests/support/short_track.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::compare_results_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -152,4 +152,4 @@ TEST_F(CompareResultsTest, ACancelledComparisonWritesNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::compare_results_test

@@ -11,7 +11,7 @@
 #include "bodyloom/data_tools/video/image_file.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::error_pictures_test {
 namespace {
 
 Image Noise(int width, int height, int seed) {
@@ -86,4 +86,4 @@ TEST(ErrorPictures, OneIsWrittenForEveryFrame) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::error_pictures_test

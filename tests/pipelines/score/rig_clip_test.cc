@@ -14,7 +14,7 @@
 #include "bodyloom/pipelines/score/evaluate_track.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::rig_clip_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -144,4 +144,4 @@ TEST(RigDetections, AreReadFromText) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::rig_clip_test

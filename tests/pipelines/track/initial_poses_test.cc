@@ -22,7 +22,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::initial_poses_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -224,4 +224,4 @@ TEST(Sam3dBody, AStartOfLandmarksAlone) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::initial_poses_test

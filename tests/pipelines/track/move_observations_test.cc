@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::move_observations_test {
 namespace {
 
 /// A video of half the camera's size, shifted by a few of its pixels.
@@ -59,4 +59,4 @@ TEST(MoveObservations, WhatLeavesTheCamerasImageIsCutOff) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::move_observations_test

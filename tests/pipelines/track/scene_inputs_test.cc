@@ -12,7 +12,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/exif_maker.h"
 
-namespace bodyloom {
+namespace bodyloom::scene_inputs_test {
 namespace {
 
 TrackRequest RequestFor(const std::string& video) {
@@ -56,4 +56,4 @@ TEST(SceneInputs, ALensBesideAKnownCameraIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::scene_inputs_test

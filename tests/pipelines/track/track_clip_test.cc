@@ -18,7 +18,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::track_clip_test {
 namespace {
 
 SynthClipFiles SmallClip(const ScratchFolder& folder) {
@@ -190,4 +190,4 @@ TEST(TrackClip, StraightKneesStraightenKnees) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_clip_test

@@ -21,7 +21,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 
-namespace bodyloom {
+namespace bodyloom::track_people_clip_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -208,4 +208,4 @@ TEST(TrackPeopleClip, WhatContradictsItselfIsNamed) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_people_clip_test

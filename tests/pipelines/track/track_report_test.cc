@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace bodyloom {
+namespace bodyloom::track_report_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -91,4 +91,4 @@ TEST(PlanText, AlignsRunsAndSkips) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_report_test

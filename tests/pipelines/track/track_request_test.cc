@@ -6,7 +6,7 @@
 
 #include "bodyloom/geometry/base/callbacks.h"
 
-namespace bodyloom {
+namespace bodyloom::track_request_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST(TrackRequest, IntrinsicsMakeAPinhole) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_request_test

@@ -13,7 +13,7 @@
 #include "bodyloom/pipelines/track/track_clip.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::track_to_memory_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST(TrackToMemory, ProgressCancels) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_to_memory_test

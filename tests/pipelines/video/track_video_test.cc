@@ -7,7 +7,7 @@
 
 #include "tests/data_tools/video/clip_maker.h"
 
-namespace bodyloom {
+namespace bodyloom::track_video_test {
 namespace {
 
 Track TrackOf(int width, int height) {
@@ -69,4 +69,4 @@ TEST(TrackVideo, AFolderOfImagesHasTheTracksRate) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_video_test

@@ -11,7 +11,7 @@
 #include "tests/support/embree_twin.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::embree_test {
 namespace {
 
 struct Tally {
@@ -110,4 +110,4 @@ TEST(Embree, SeesTheSameFacesOfRandomTriangles) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::embree_test

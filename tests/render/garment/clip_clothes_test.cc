@@ -10,7 +10,7 @@
 #include "bodyloom/render/gaussian_avatar/worn_garment.h"
 #include "tests/render/person/skirt_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::clip_clothes_test {
 namespace {
 
 constexpr int kFrames = 8;
@@ -105,4 +105,4 @@ TEST_F(ClipClothesTest, FindsNoneOnABareBodyAndInNoFrames) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::clip_clothes_test

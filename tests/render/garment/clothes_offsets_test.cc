@@ -13,7 +13,7 @@
 #include "bodyloom/render/texture/body_regions.h"
 #include "tests/render/person/person_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::clothes_offsets_test {
 namespace {
 
 class ClothesOffsetsTest : public ::testing::Test {
@@ -95,4 +95,4 @@ TEST_F(ClothesOffsetsTest, RefusesOtherSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::clothes_offsets_test

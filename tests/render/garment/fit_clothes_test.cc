@@ -14,7 +14,7 @@
 #include "bodyloom/render/view/overlay.h"
 #include "tests/render/person/skirt_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::fit_clothes_test {
 namespace {
 
 class FitClothesTest : public ::testing::Test {
@@ -85,4 +85,4 @@ TEST_F(FitClothesTest, ASkirtDoesNotMakeThighsWide) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::fit_clothes_test

@@ -5,7 +5,7 @@
 
 #include "tests/render/person/skirt_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::garment_swing_test {
 namespace {
 
 TEST(GarmentSwing, TurnsUpInThePictureOnly) {
@@ -15,4 +15,4 @@ TEST(GarmentSwing, TurnsUpInThePictureOnly) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::garment_swing_test

@@ -21,7 +21,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::person_cloth_test {
 namespace {
 
 /// The built-in body in a skirt, grey all over.
@@ -151,4 +151,4 @@ TEST(PersonCloth, IsAnimatedFromAnySideAndFrozen) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::person_cloth_test

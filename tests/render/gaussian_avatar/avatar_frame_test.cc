@@ -6,7 +6,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::avatar_frame_test {
 namespace {
 
 /// Plain skinning of the shaped vertices with the frame's bones, plus its correctives.
@@ -81,4 +81,4 @@ TEST(AvatarFrame, RefusesAPoseOfOtherJoints) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::avatar_frame_test

@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::cloth_gaussians_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -150,4 +150,4 @@ TEST_F(ClothGaussiansTest, GoWithTheRootWhereAPoseIsCorrected) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::cloth_gaussians_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace bodyloom {
+namespace bodyloom::gaussian_body_test {
 namespace {
 
 GaussianBody OfScales(const std::vector<std::array<float, 3>>& log_scales) {
@@ -54,4 +54,4 @@ TEST(GaussianBody, SaysWhatIsWrongWithIt) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::gaussian_body_test

@@ -12,7 +12,7 @@
 #include "tests/render/gaussian_avatar/person_scene.h"
 #include "tests/render/splat/same_bytes.h"
 
-namespace bodyloom {
+namespace bodyloom::pose_gaussians_test {
 namespace {
 
 using Body = GaussianBody;
@@ -159,4 +159,4 @@ TEST(PoseGaussians, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pose_gaussians_test

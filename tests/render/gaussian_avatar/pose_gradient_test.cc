@@ -14,7 +14,7 @@
 #include "tests/render/gaussian_avatar/person_scene.h"
 #include "tests/render/splat/same_bytes.h"
 
-namespace bodyloom {
+namespace bodyloom::pose_gradient_test {
 namespace {
 
 using Body = GaussianBody;
@@ -244,4 +244,4 @@ TEST(PoseGradient, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pose_gradient_test

@@ -12,7 +12,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::skin_gaussians_test {
 namespace {
 
 TEST(SkinGaussians, CoverThePosedBodyAndNothingElse) {
@@ -88,4 +88,4 @@ TEST(SkinGaussians, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::skin_gaussians_test

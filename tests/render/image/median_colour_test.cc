@@ -11,7 +11,7 @@
 
 #include "bodyloom/geometry/base/percentile.h"
 
-namespace bodyloom {
+namespace bodyloom::median_colour_test {
 namespace {
 
 TEST(MedianColour, IsTheMiddleOfEachChannel) {
@@ -51,4 +51,4 @@ TEST(MedianColour, OfFewIsNone) {
 TEST(MedianColour, OfNoColourIsRefused) { EXPECT_THROW(MedianColour({}), std::invalid_argument); }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::median_colour_test

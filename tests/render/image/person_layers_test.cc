@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::person_layers_test {
 namespace {
 
 TEST(PersonLayers, TheBoxIsAroundWhatIsCovered) {
@@ -25,4 +25,4 @@ TEST(PersonLayers, TheBoxIsAroundWhatIsCovered) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::person_layers_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace bodyloom {
+namespace bodyloom::fit_lighting_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -187,4 +187,4 @@ TEST(FitLighting, DerivativesAreExact) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::fit_lighting_test

@@ -14,7 +14,7 @@
 #include "bodyloom/render/view/overlay.h"
 #include "tests/support/meshes.h"
 
-namespace bodyloom {
+namespace bodyloom::lit_surface_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -177,4 +177,4 @@ TEST(LitSurface, IsTheSameForAnyThreadsAndRefusesOtherSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lit_surface_test

@@ -13,7 +13,7 @@
 #include "bodyloom/render/raster/resolve_pixels.h"
 #include "bodyloom/render/raster/visibility_buffer.h"
 
-namespace bodyloom {
+namespace bodyloom::relight_person_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -129,4 +129,4 @@ TEST(RelightPerson, ThePictureInOtherLightIsWhatOtherLightWouldShow) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::relight_person_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::relight_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -158,4 +158,4 @@ TEST(ShLighting, RefusesWhatIsNoLight) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::relight_test

@@ -9,7 +9,7 @@
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/render/view/overlay.h"
 
-namespace bodyloom {
+namespace bodyloom::limb_leaks_test {
 namespace {
 
 constexpr int kWidth = 40, kHeight = 30;
@@ -90,4 +90,4 @@ TEST(LimbLeaks, RefusesOtherSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::limb_leaks_test

@@ -9,7 +9,7 @@
 #include "tests/support/coloured_person.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::person_frame_painter_test {
 namespace {
 
 DrawnPerson TwoPixels() {
@@ -56,4 +56,4 @@ TEST(PersonFramePainter, AreTheSameForAnyNumberDrawnAtOnce) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::person_frame_painter_test

@@ -14,7 +14,7 @@
 #include "bodyloom/render/photo_avatar/photo_person.h"
 #include "bodyloom/render/view/overlay.h"
 
-namespace bodyloom {
+namespace bodyloom::photo_light_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -126,4 +126,4 @@ TEST(LightOfPhoto, IsEvenWhereItCannotBeFound) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::photo_light_test

@@ -20,7 +20,7 @@
 #include "bodyloom/render/view/overlay.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::photo_person_builder_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -137,4 +137,4 @@ TEST(PhotoPersonBuilder, RefusesWhatShowsTooLittle) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::photo_person_builder_test

@@ -14,7 +14,7 @@
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/geometry/body/posed_body.h"
 
-namespace bodyloom {
+namespace bodyloom::texel_labels_test {
 namespace {
 
 using enum PersonLabel;
@@ -122,4 +122,4 @@ TEST_F(TexelLabelsTest, RefusesOtherSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::texel_labels_test

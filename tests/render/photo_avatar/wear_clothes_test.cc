@@ -30,7 +30,7 @@
 #include "tests/support/short_track.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::wear_clothes_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -263,4 +263,4 @@ TEST(InClothesOf, KeptPeopleExchangeClothes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::wear_clothes_test

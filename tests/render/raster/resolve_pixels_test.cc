@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::resolve_pixels_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -264,4 +264,4 @@ TEST(ResolvePixels, RefuseWhatTheBodyLacksAndSizesThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::resolve_pixels_test

@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::visibility_buffer_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -355,4 +355,4 @@ TEST(VisibilityBuffer, RefusesWhatItCannotSee) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::visibility_buffer_test

@@ -9,7 +9,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::visible_points_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -114,4 +114,4 @@ TEST(VisiblePoints, RefuseChartsOfABodyWithoutThem) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::visible_points_test

@@ -8,7 +8,7 @@
 
 #include "bodyloom/render/shadows/shadow_map.h"
 
-namespace bodyloom {
+namespace bodyloom::shadows_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -140,4 +140,4 @@ TEST(Openness, WhatIsConvexIsOpen) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::shadows_test

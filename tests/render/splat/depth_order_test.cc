@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-namespace bodyloom {
+namespace bodyloom::depth_order_test {
 namespace {
 
 std::vector<int32_t> Expected(const std::vector<float>& depth, std::vector<int32_t> rows) {
@@ -57,4 +57,4 @@ TEST(DepthOrder, OfNothingAndOfOne) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::depth_order_test

@@ -11,7 +11,7 @@
 #include "tests/render/splat/same_bytes.h"
 #include "tests/support/splat_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::project_gaussians_test {
 namespace {
 
 using In = CameraGaussians;
@@ -247,4 +247,4 @@ TEST(ProjectGaussians, OfNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::project_gaussians_test

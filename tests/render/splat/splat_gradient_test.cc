@@ -9,7 +9,7 @@
 #include "tests/render/splat/same_bytes.h"
 #include "tests/render/splat/splat_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::splat_gradient_test {
 namespace {
 
 using Screen = ScreenGaussians;
@@ -189,4 +189,4 @@ TEST(SplatGradient, RefusesTablesOfOtherSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::splat_gradient_test

@@ -14,7 +14,7 @@
 #include "tests/render/splat/same_bytes.h"
 #include "tests/render/splat/splat_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::splat_picture_test {
 namespace {
 
 using Plane = SplatPicture::Plane;
@@ -276,4 +276,4 @@ TEST(SplatPicture, GarbageNeitherCrashesNorShows) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::splat_picture_test

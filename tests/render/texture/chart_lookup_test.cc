@@ -9,7 +9,7 @@
 #include "bodyloom/render/raster/visible_points.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::chart_lookup_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -68,4 +68,4 @@ TEST(ChartLookup, RefusesWhatIsNoChartCoordinate) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::chart_lookup_test

@@ -13,7 +13,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::texture_extract_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -294,4 +294,4 @@ TEST(TextureExtract, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::texture_extract_test

@@ -11,7 +11,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::uv_sample_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -138,4 +138,4 @@ TEST(UvSample, ProjectsMapsWhereTheSurfaceIsSeen) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::uv_sample_test

@@ -13,7 +13,7 @@
 #include "tests/data_tools/descriptors/swinging_track.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::descriptor_frames_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -138,4 +138,4 @@ TEST(DescriptorFrames, RefusesWhatItDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::descriptor_frames_test

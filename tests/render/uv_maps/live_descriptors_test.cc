@@ -12,7 +12,7 @@
 #include "bodyloom/render/uv_maps/descriptor_frames.h"
 #include "tests/data_tools/descriptors/swinging_track.h"
 
-namespace bodyloom {
+namespace bodyloom::live_descriptors_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -116,4 +116,4 @@ TEST(LiveDescriptors, RefusalsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::live_descriptors_test

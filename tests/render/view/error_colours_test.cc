@@ -13,7 +13,7 @@
 #include "bodyloom/render/view/caption.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::error_colours_test {
 namespace {
 
 /// CIELAB lightness (D65) of an sRGB colour.
@@ -138,4 +138,4 @@ TEST(ErrorColours, OnASurfacePixelsHaveTheirErrorsColours) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::error_colours_test

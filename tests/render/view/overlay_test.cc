@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::overlay_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -293,4 +293,4 @@ TEST(Overlay, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::overlay_test

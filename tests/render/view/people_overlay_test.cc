@@ -9,7 +9,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::people_overlay_test {
 namespace {
 
 const Camera kCamera = MakePinhole(480, 360, 390);
@@ -140,4 +140,4 @@ TEST(PeopleOverlay, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::people_overlay_test

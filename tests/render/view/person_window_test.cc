@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::person_window_test {
 namespace {
 
 PersonExtent Box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y1}}; }
@@ -84,4 +84,4 @@ TEST(PersonWindow, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::person_window_test

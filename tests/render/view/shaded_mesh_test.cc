@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::shaded_mesh_test {
 namespace {
 
 MatrixX3d ToyVertices(uint32_t seed, double distance_m) {
@@ -146,4 +146,4 @@ TEST(Overlay, SamePictureForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::shaded_mesh_test

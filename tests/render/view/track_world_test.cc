@@ -5,7 +5,7 @@
 
 #include "bodyloom/render/view/follow_view.h"
 
-namespace bodyloom {
+namespace bodyloom::track_world_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -57,4 +57,4 @@ TEST(TrackWorld, TheSurestOfAllCounts) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_world_test

@@ -9,7 +9,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "bodyloom/geometry/scene/camera_path.h"
 
-namespace bodyloom {
+namespace bodyloom::camera_scale_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -114,4 +114,4 @@ TEST(CameraScale, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::camera_scale_test

@@ -9,7 +9,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/frame_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::motion_level_test {
 namespace {
 
 /// One estimated joint turns by ½ a t² about an axis, at 15 frames a second.
@@ -80,4 +80,4 @@ TEST(MotionLevel, SigmaOfEachJointTakesTheCommonOnesPlace) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::motion_level_test

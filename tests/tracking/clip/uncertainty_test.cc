@@ -23,7 +23,7 @@
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::uncertainty_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -309,4 +309,4 @@ TEST(Uncertainty, WhatWasMeasuredAndWhatTheLifterSaysTogether) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::uncertainty_test

@@ -8,7 +8,7 @@
 
 #include "tests/tracking/detection/masked_clip.h"
 
-namespace bodyloom {
+namespace bodyloom::background_cut_test {
 namespace {
 
 constexpr int kFrames = 20;
@@ -155,4 +155,4 @@ TEST(ColourDensity, IsADensityOverAllColours) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::background_cut_test

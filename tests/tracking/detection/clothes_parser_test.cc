@@ -16,7 +16,7 @@
 #include "tests/support/random_picture_unet.h"
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::clothes_parser_test {
 namespace {
 
 /// The built-in body in a picture of coloured stripes; its mask is the body's own silhouette.
@@ -157,4 +157,4 @@ TEST(ParsePhoto, RefusesBeforeItWorks) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::clothes_parser_test

@@ -12,7 +12,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/scratch_folder.h"
 
-namespace bodyloom {
+namespace bodyloom::keypoint_model_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -188,4 +188,4 @@ TEST_F(OnnxDetectors, FilesThatContradictEachOther) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::keypoint_model_test

@@ -9,7 +9,7 @@
 #include "bodyloom/data_tools/datasets/single_person_dataset.h"
 #include "bodyloom/render/view/overlay.h"
 
-namespace bodyloom {
+namespace bodyloom::label_colours_test {
 namespace {
 
 using enum PersonLabel;
@@ -96,4 +96,4 @@ TEST(RelabelByColour, WithoutAFaceNothingIsKnown) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::label_colours_test

@@ -13,7 +13,7 @@
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::model_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ TEST(ModelFiles, AreThoseOfTheList) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::model_files_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::people_between_test {
 namespace {
 
 /// Two landmarks 100 px apart, the upper one at (x, y).
@@ -75,4 +75,4 @@ TEST(LargestStep, IsThatOfWhoeverGoesFarthestInTheirOwnSize) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::people_between_test

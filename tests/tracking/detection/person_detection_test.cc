@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bodyloom {
+namespace bodyloom::person_detection_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -92,4 +92,4 @@ TEST(PersonDetection, WhatIsUnsureNegativeOrNotANumberIsNobody) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::person_detection_test

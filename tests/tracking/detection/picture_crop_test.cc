@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bodyloom {
+namespace bodyloom::picture_crop_test {
 namespace {
 
 /// Red grows along x, green along y.
@@ -101,4 +101,4 @@ TEST(TopDownPixels, AreThoseOfTheBox) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::picture_crop_test

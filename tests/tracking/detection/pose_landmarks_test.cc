@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bodyloom {
+namespace bodyloom::pose_landmarks_test {
 namespace {
 
 /// Outputs in which every landmark lies at (64, 128) of 256 and the heatmaps are cold.
@@ -137,4 +137,4 @@ TEST(PoseLandmarks, DistanceIsRelativeToTheRegion) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pose_landmarks_test

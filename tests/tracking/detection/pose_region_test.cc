@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace bodyloom {
+namespace bodyloom::pose_region_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -118,4 +118,4 @@ TEST(PoseRegion, OutsideTheImageIsBlackBeforeScaling) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pose_region_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bodyloom {
+namespace bodyloom::simcc_landmarks_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -63,4 +63,4 @@ TEST_F(Simcc, OtherNumbersAreRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::simcc_landmarks_test

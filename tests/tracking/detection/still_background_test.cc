@@ -8,7 +8,7 @@
 
 #include "tests/tracking/detection/masked_clip.h"
 
-namespace bodyloom {
+namespace bodyloom::still_background_test {
 namespace {
 
 std::vector<CoveredPicture> Covered(const MaskedClip& clip) {
@@ -89,4 +89,4 @@ TEST(StillBackground, RefusesPicturesThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::still_background_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bodyloom {
+namespace bodyloom::yolo_people_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -102,4 +102,4 @@ TEST(DecodeYolo, OtherNumbersAreRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::yolo_people_test

@@ -10,7 +10,7 @@
 
 #include "bodyloom/geometry/math/rotation.h"
 
-namespace bodyloom {
+namespace bodyloom::ground_plane_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -286,4 +286,4 @@ TEST(GroundPlane, StandingFeetGoWithACameraThatIsSaidToStandStill) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::ground_plane_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace bodyloom {
+namespace bodyloom::swap_repair_test {
 namespace {
 
 /// A person 400 px tall who walks to the right; ankles and wrists swing through each other at 1 Hz.
@@ -111,4 +111,4 @@ TEST(Viterbi, FindsTheCheapestOfAllPaths) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::swap_repair_test

@@ -15,7 +15,7 @@
 #include "bodyloom/tracking/lifter/lifter_input.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::lift_keypoints_test {
 namespace {
 
 LifterWeights RandomWeights(uint64_t seed) {
@@ -231,4 +231,4 @@ TEST(StartFromLifted, PlacesTheHipsWhereTheRaysMeet) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lift_keypoints_test

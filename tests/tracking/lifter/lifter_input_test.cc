@@ -14,7 +14,7 @@
 #include "bodyloom/geometry/body/posed_body.h"
 #include "bodyloom/geometry/scene/observations.h"
 
-namespace bodyloom {
+namespace bodyloom::lifter_input_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -399,4 +399,4 @@ TEST(LifterInput, RejectsArraysOfAnotherLength) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifter_input_test

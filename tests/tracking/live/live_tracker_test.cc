@@ -12,7 +12,7 @@
 #include "bodyloom/tracking/terms/landmarks.h"
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::live_tracker_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -443,4 +443,4 @@ TEST(TrackLive, SaysWhichFramesWereLeftOut) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::live_tracker_test

@@ -11,7 +11,7 @@
 #include "bodyloom/render/view/follow_view.h"
 #include "bodyloom/render/view/overlay.h"
 
-namespace bodyloom {
+namespace bodyloom::occlusion_test {
 namespace {
 
 /// A body in its rest pose, upright before the camera, at x and z metres.
@@ -138,4 +138,4 @@ TEST(Occlusion, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::occlusion_test

@@ -19,7 +19,7 @@
 #include "bodyloom/tracking/problem/sequence_problem.h"
 #include "bodyloom/tracking/problem/stature.h"
 
-namespace bodyloom {
+namespace bodyloom::track_people_test {
 namespace {
 
 SynthClip Clip(uint64_t seed) {
@@ -280,4 +280,4 @@ TEST(TrackPeople, NobodyAndTwoCamerasAreRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_people_test

@@ -17,7 +17,7 @@
 #include "bodyloom/tracking/clip/uncertainty.h"
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::focal_length_test {
 namespace {
 
 /// A fit's posterior when its clip measured log f = x with this variance.
@@ -121,4 +121,4 @@ TEST(FocalLength, APriorThatIsNoneIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::focal_length_test

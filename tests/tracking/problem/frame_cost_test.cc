@@ -25,7 +25,7 @@
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::frame_cost_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -463,4 +463,4 @@ TEST(SquareRootSystem, ParametersNothingDependsOnGiveZeroRows) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::frame_cost_test

@@ -13,7 +13,7 @@
 #include "tests/support/frame_scene.h"
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::moving_camera_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -151,4 +151,4 @@ TEST(MovingCamera, ACameraThatStandsElsewhereAllTheTimeChangesNothing) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::moving_camera_test

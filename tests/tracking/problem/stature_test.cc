@@ -10,7 +10,7 @@
 #include "bodyloom/tracking/problem/sequence_problem.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::stature_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -69,4 +69,4 @@ TEST(Stature, WhatIsAssumedIsWhatIsGivenOrTheMeanBodys) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::stature_test

@@ -29,7 +29,7 @@
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::user_term_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -563,4 +563,4 @@ TEST(UserTerm, MovesTheWristLive) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::user_term_test

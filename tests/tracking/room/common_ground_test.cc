@@ -16,7 +16,7 @@
 #include "bodyloom/tracking/initialise/ground_plane.h"
 #include "bodyloom/tracking/solvers/residuals/ceres_functions.h"
 
-namespace bodyloom {
+namespace bodyloom::common_ground_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -328,4 +328,4 @@ TEST(GemanMcClureLoss, DerivativesAreDifferencesAndItIsTheKernelOfImages) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::common_ground_test

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace bodyloom {
+namespace bodyloom::shared_scene_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -180,4 +180,4 @@ TEST(SharedScene, SomebodyOnAStageKeepsTheirSizeAndTheMostFeetHaveTheGround) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::shared_scene_test

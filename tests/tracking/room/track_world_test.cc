@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::track_world_test {
 namespace {
 
 std::vector<MatrixX3d> OneFrame() { return {(MatrixX3d(1, 3) << 0, 1, 3).finished()}; }
@@ -72,4 +72,4 @@ TEST(TrackWorld, PeopleShareOne) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::track_world_test

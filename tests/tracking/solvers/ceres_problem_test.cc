@@ -26,7 +26,7 @@
 #include "bodyloom/tracking/solvers/term_costs.h"
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::ceres_problem_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -281,4 +281,4 @@ TEST(CeresFinish, TheProblemIsWhatTheTrackerSolves) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::ceres_problem_test

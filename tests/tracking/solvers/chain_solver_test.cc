@@ -11,7 +11,7 @@
 #include "bodyloom/tracking/terms/landmarks.h"
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::chain_solver_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -294,4 +294,4 @@ TEST(ChainSolver, AllFramesAreCountedAtTheLastIterationAlsoWhileSomeAreFrozen) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::chain_solver_test

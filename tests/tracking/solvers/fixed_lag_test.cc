@@ -11,7 +11,7 @@
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::fixed_lag_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -257,4 +257,4 @@ TEST(ChainSolver, ReusedLinearisationsEndAtTheSameCost) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::fixed_lag_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bodyloom {
+namespace bodyloom::frozen_frames_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -89,4 +89,4 @@ TEST(FrozenFrames, AChainThatMovesAllOverIsNotDivided) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::frozen_frames_test

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::term_costs_test {
 namespace {
 
 std::vector<double> Times(int frames, double fps) {
@@ -54,4 +54,4 @@ TEST(WorstStretch, GapsInTimeCountByTheClock) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::term_costs_test

@@ -12,7 +12,7 @@
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::straight_knees_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -113,4 +113,4 @@ TEST(StraightKnees, AKneeThatIsNotEstimatedHasNoPart) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::straight_knees_test

@@ -9,7 +9,7 @@
 #include "bodyloom/geometry/scene/camera_path.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::synth_camera_path_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -100,4 +100,4 @@ TEST(SynthCameraPath, RefusesWhatHasNoPlaceInAScene) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::synth_camera_path_test

@@ -14,7 +14,7 @@
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
-namespace bodyloom {
+namespace bodyloom::synthetic_clip_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -493,4 +493,4 @@ TEST(HashRandom, IsUniformNormalAndIndependentOfOrder) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::synthetic_clip_test

@@ -13,7 +13,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::synthetic_motion_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -209,4 +209,4 @@ TEST(SynthCamera, KnowsWorldsWithZUp) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::synthetic_motion_test

@@ -10,7 +10,7 @@
 
 #include "tests/data_tools/synthesis/lifter/lifter_support.h"
 
-namespace bodyloom {
+namespace bodyloom::lifter_detections_test {
 namespace {
 
 using Eigen::Vector3f;
@@ -267,4 +267,4 @@ TEST(LifterDetections, SwapsExchangePairs) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifter_detections_test

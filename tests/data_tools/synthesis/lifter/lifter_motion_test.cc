@@ -13,7 +13,7 @@
 #include "bodyloom/tracking/terms/joint_limits.h"
 #include "tests/data_tools/synthesis/lifter/lifter_support.h"
 
-namespace bodyloom {
+namespace bodyloom::lifter_motion_test {
 namespace {
 
 using Eigen::Quaternionf;
@@ -414,4 +414,4 @@ TEST(WorldMotion, ContactIsOfFeetThatStandAndStandStill) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifter_motion_test

@@ -13,7 +13,7 @@
 #include "bodyloom/geometry/base/parallel.h"
 #include "tests/data_tools/synthesis/lifter/lifter_support.h"
 
-namespace bodyloom {
+namespace bodyloom::lifter_windows_test {
 namespace {
 
 using Eigen::Vector3f;
@@ -302,4 +302,4 @@ TEST(LifterWindows, OneFrameAndManyFrames) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifter_windows_test

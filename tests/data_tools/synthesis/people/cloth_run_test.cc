@@ -20,7 +20,7 @@
 #include "tests/data_tools/synthesis/people/turning_motion.h"
 #include "tests/support/paths.h"
 
-namespace bodyloom {
+namespace bodyloom::cloth_run_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -245,4 +245,4 @@ TEST(ClothRun, ChecksItsContract) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::cloth_run_test

@@ -7,7 +7,7 @@
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 
-namespace bodyloom {
+namespace bodyloom::clothes_details_test {
 namespace {
 
 using Eigen::Vector3f;
@@ -80,4 +80,4 @@ TEST(ClothesDetails, SkinFaceAndHairHaveNone) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::clothes_details_test

@@ -15,7 +15,7 @@
 #include "tests/data_tools/synthesis/people/turning_motion.h"
 #include "tests/support/toy_body.h"
 
-namespace bodyloom {
+namespace bodyloom::dressed_person_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -292,4 +292,4 @@ TEST(MakeSinglePersonDataset, SameBytesForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::dressed_person_test

@@ -9,7 +9,7 @@
 
 #include "bodyloom/data_tools/body/builtin_body.h"
 
-namespace bodyloom {
+namespace bodyloom::wardrobe_test {
 namespace {
 
 using Eigen::Vector3f;
@@ -133,4 +133,4 @@ TEST(Wardrobe, APrintIsOnTheChestAlone) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::wardrobe_test

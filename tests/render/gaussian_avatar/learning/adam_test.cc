@@ -8,7 +8,7 @@
 
 #include "tests/render/splat/same_bytes.h"
 
-namespace bodyloom {
+namespace bodyloom::adam_test {
 namespace {
 
 FloatColumns RandomTable(int columns, int rows, uint32_t seed) {
@@ -103,4 +103,4 @@ TEST(Adam, RefusesTablesOfOtherSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::adam_test

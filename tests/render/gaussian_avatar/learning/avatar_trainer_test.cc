@@ -11,7 +11,7 @@
 #include "tests/render/gaussian_avatar/learning/lesson.h"
 #include "tests/render/splat/same_bytes.h"
 
-namespace bodyloom {
+namespace bodyloom::avatar_trainer_test {
 namespace {
 
 AvatarTrainerOptions Short(int64_t steps) {
@@ -315,4 +315,4 @@ TEST(TrainingView, CutsThePersonAndRemembersWhoIsWhere) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::avatar_trainer_test

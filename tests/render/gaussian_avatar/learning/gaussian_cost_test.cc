@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace bodyloom {
+namespace bodyloom::gaussian_cost_test {
 namespace {
 
 GaussianBody RandomBody() {
@@ -70,4 +70,4 @@ TEST(GaussianCost, RefusesATableOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::gaussian_cost_test

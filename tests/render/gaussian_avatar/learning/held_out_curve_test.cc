@@ -10,7 +10,7 @@
 #include "tests/render/gaussian_avatar/learning/lesson.h"
 #include "tests/render/splat/same_bytes.h"
 
-namespace bodyloom {
+namespace bodyloom::held_out_curve_test {
 namespace {
 
 constexpr HeldOutOptions kOptions = {
@@ -171,4 +171,4 @@ TEST(OtherCloth, IsLearnedFromInTurn) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::held_out_curve_test

@@ -9,7 +9,7 @@
 
 #include "tests/render/splat/same_bytes.h"
 
-namespace bodyloom {
+namespace bodyloom::picture_loss_test {
 namespace {
 
 FloatColumns RandomPlanes(int width, int height, uint32_t seed) {
@@ -152,4 +152,4 @@ TEST(PictureLoss, RefusesTablesOfOtherSizes) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::picture_loss_test

@@ -14,7 +14,7 @@
 #include "tests/render/gaussian_avatar/person_scene.h"
 #include "tests/render/splat/same_bytes.h"
 
-namespace bodyloom {
+namespace bodyloom::pose_refiner_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -291,4 +291,4 @@ TEST(PoseRefiner, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::pose_refiner_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/short_track.h"
 
-namespace bodyloom {
+namespace bodyloom::person_texture_test {
 namespace {
 
 constexpr Colour kColour = {40, 90, 200};
@@ -71,4 +71,4 @@ TEST(PersonTexture, RefusesPicturesOfAnotherSizeAndBodiesWithoutUv) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::person_texture_test

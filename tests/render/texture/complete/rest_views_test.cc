@@ -13,7 +13,7 @@
 #include "bodyloom/render/texture/complete/texel_counterparts.h"
 #include "tests/render/person/person_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::rest_views_test {
 namespace {
 
 class RestViewsTest : public ::testing::Test {
@@ -113,4 +113,4 @@ TEST_F(RestViewsTest, RegionsLieWhereTheirNamesSay) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::rest_views_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/meshes.h"
 
-namespace bodyloom {
+namespace bodyloom::uv_fill_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -244,4 +244,4 @@ TEST_F(UvFill, PartsThatNothingKnownTouchesTakeTheMean) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::uv_fill_test

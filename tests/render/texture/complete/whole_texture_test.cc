@@ -11,7 +11,7 @@
 #include "bodyloom/render/texture/complete/texel_counterparts.h"
 #include "tests/render/person/person_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::whole_texture_test {
 namespace {
 
 using Paint = std::function<Eigen::Vector3f(const Eigen::Vector3d& place)>;
@@ -181,4 +181,4 @@ TEST_F(WholeTextureTest, RefusesWhatItCannotFill) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::whole_texture_test

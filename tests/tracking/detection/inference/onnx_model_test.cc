@@ -12,7 +12,7 @@
 #include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
-namespace bodyloom {
+namespace bodyloom::onnx_model_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -175,4 +175,4 @@ TEST(OnnxModel, BytesChanged) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::onnx_model_test

@@ -11,7 +11,7 @@
 #include "tests/data_tools/detection/small_onnx.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
-namespace bodyloom {
+namespace bodyloom::onnx_network_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -120,4 +120,4 @@ TEST(OnnxNetwork, AnotherShapeThanTheModelsIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::onnx_network_test

@@ -12,7 +12,7 @@
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
-namespace bodyloom {
+namespace bodyloom::tflite_model_test {
 namespace {
 
 using Writer = TfliteWriter;
@@ -117,4 +117,4 @@ TEST(TfliteModel, ReadsFromAFile) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::tflite_model_test

@@ -15,7 +15,7 @@
 #include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/detection/tflite_writer.h"
 
-namespace bodyloom {
+namespace bodyloom::tflite_network_test {
 namespace {
 
 using Writer = TfliteWriter;
@@ -357,4 +357,4 @@ TEST(TfliteShapes, SamePaddingIsTensorFlows) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::tflite_network_test

@@ -10,7 +10,7 @@
 
 #include "bodyloom/tracking/problem/panel_simd.h"
 
-namespace bodyloom {
+namespace bodyloom::chain_factor_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -288,4 +288,4 @@ TEST(PanelKernels, ProductsEqualTheirFormula) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::chain_factor_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/sequence_scene.h"
 
-namespace bodyloom {
+namespace bodyloom::chain_problem_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -126,4 +126,4 @@ TEST(ChainProblem, FrozenFramesChangeNothingButTheWork) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::chain_problem_test

@@ -10,7 +10,7 @@
 #include "bodyloom/tracking/solvers/residuals/ceres_functions.h"
 #include "tests/tracking/jet_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::acceleration_cost_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -129,4 +129,4 @@ TEST(LinearCost, ResidualAndJacobian) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::acceleration_cost_test

@@ -10,7 +10,7 @@
 #include "bodyloom/geometry/math/rotation.h"
 #include "tests/tracking/jet_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::velocity_cost_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -79,4 +79,4 @@ TEST(VelocityCosts, RefuseWhatHasNoMeaning) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::velocity_cost_test

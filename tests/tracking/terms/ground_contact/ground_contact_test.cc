@@ -13,7 +13,7 @@
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::ground_contact_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -135,4 +135,4 @@ TEST(Upright, LeanIsMeasuredAlongTheNormal) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::ground_contact_test

@@ -12,7 +12,7 @@
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::lifted_pose_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -129,4 +129,4 @@ TEST(LiftedPose, SigmaIsFlooredAndTurnsWithTheView) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::lifted_pose_test

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace bodyloom {
+namespace bodyloom::distance_field_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -128,4 +128,4 @@ TEST(DistanceField, BoundaryRunsThroughTheMiddleOfWhatIsUnknown) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::distance_field_test

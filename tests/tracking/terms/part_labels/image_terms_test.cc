@@ -16,7 +16,7 @@
 #include "bodyloom/render/raster/visibility_buffer.h"
 #include "bodyloom/tracking/clip/track_plan.h"
 
-namespace bodyloom {
+namespace bodyloom::image_terms_test {
 namespace {
 
 SynthClip Clip(int frames, double uv_sigma) {
@@ -228,4 +228,4 @@ TEST(ImageTerms, ContradictionsAreNamed) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::image_terms_test

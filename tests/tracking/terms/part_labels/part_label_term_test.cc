@@ -12,7 +12,7 @@
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::part_label_term_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -471,4 +471,4 @@ TEST(PartLabelTerm, ABodyOutOfTheImageOrBehindTheCameraStaysFinite) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::part_label_term_test

@@ -10,7 +10,7 @@
 
 #include "bodyloom/geometry/base/hash_random.h"
 
-namespace bodyloom {
+namespace bodyloom::part_map_test {
 namespace {
 
 constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartLabelSequence::kUnknown;
@@ -97,4 +97,4 @@ TEST(PartMap, ArmsOfOneShapeAreOnePiece) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::part_map_test

@@ -17,7 +17,7 @@
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 
-namespace bodyloom {
+namespace bodyloom::rendered_uv_test {
 namespace {
 
 using Eigen::Matrix2d;
@@ -335,4 +335,4 @@ TEST(DenseWhitening, WithoutAKnownUvNoiseIsTheSameInEveryDirection) {
 }
 
 }  // namespace
-}  // namespace bodyloom
+}  // namespace bodyloom::rendered_uv_test
