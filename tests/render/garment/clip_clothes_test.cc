@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "bodyloom/render/gaussian_avatar/worn_garment.h"
-#include "tests/render/person/skirt_scene.h"
+#include "tests/render/garment/skirt_scene.h"
 
 namespace bodyloom::clip_clothes_test {
 namespace {

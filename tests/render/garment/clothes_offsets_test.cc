@@ -11,7 +11,7 @@
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/geometry/body/normals.h"
 #include "bodyloom/render/texture/body_regions.h"
-#include "tests/render/person/person_scene.h"
+#include "tests/render/garment/person_scene.h"
 
 namespace bodyloom::clothes_offsets_test {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "bodyloom/geometry/body/normals.h"
 #include "bodyloom/render/view/overlay.h"
-#include "tests/render/person/skirt_scene.h"
+#include "tests/render/garment/skirt_scene.h"
 
 namespace bodyloom::fit_clothes_test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/render/person/skirt_scene.h"
+#include "tests/render/garment/skirt_scene.h"
 
 namespace bodyloom::garment_swing_test {
 namespace {

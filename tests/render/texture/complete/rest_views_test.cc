@@ -11,7 +11,7 @@
 #include "bodyloom/geometry/base/percentile.h"
 #include "bodyloom/render/texture/body_regions.h"
 #include "bodyloom/render/texture/complete/texel_counterparts.h"
-#include "tests/render/person/person_scene.h"
+#include "tests/render/garment/person_scene.h"
 
 namespace bodyloom::rest_views_test {
 namespace {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "bodyloom/render/texture/complete/texel_counterparts.h"
-#include "tests/render/person/person_scene.h"
+#include "tests/render/garment/person_scene.h"
 
 namespace bodyloom::whole_texture_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "bodyloom/geometry/scene/track.h"
 #include "bodyloom/render/garment/fit_clothes.h"
 #include "bodyloom/render/view/overlay.h"
-#include "tests/render/person/person_scene.h"
+#include "tests/render/garment/person_scene.h"
 
 namespace bodyloom {
 
