@@ -7,7 +7,7 @@
 #include "apps/progress.h"
 #include "apps/shown_motion_options.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/gaussian_avatar/animate_avatar.h"
+#include "pipelines/gaussian_avatar/animate_avatar.h"
 
 namespace bodyloom {
 namespace {

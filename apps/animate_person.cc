@@ -11,7 +11,7 @@
 #include "apps/exec_beside.h"
 #include "apps/progress.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/photo_avatar/animate_person.h"
+#include "pipelines/photo_avatar/animate_person.h"
 
 namespace bodyloom {
 namespace {

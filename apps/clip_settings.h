@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "bodyloom/pipelines/batch/batch_clip.h"
-#include "bodyloom/pipelines/batch/manifest.h"
+#include "pipelines/batch/batch_clip.h"
+#include "pipelines/batch/manifest.h"
 
 namespace CLI {
 class App;

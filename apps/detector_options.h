@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/tracking/detection/frame_detector.h"
+#include "tracking/detection/frame_detector.h"
 
 namespace CLI {
 class App;

@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "bodyloom/pipelines/report_text.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

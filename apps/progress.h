@@ -7,7 +7,7 @@
 #include <iostream>
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 

@@ -2,7 +2,7 @@
 /// The flags of `bodyloom run` but those of its outputs.
 #pragma once
 
-#include "bodyloom/pipelines/track/track_people_clip.h"
+#include "pipelines/track/track_people_clip.h"
 
 namespace CLI {
 class App;

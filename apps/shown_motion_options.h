@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
+#include "geometry/uv_maps/descriptor_options.h"
 
 namespace CLI {
 class App;

@@ -2,7 +2,7 @@
 /// The flags of `bodyloom synth`.
 #pragma once
 
-#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
+#include "pipelines/synthesis/synthesize_clip.h"
 
 namespace CLI {
 class App;

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "apps/detector_options.h"
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

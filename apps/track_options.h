@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/pipelines/track/track_request.h"
+#include "pipelines/track/track_request.h"
 
 namespace CLI {
 class App;

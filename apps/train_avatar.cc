@@ -8,7 +8,7 @@
 
 #include "apps/progress.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/gaussian_avatar/train_avatar.h"
+#include "pipelines/gaussian_avatar/train_avatar.h"
 
 namespace bodyloom {
 namespace {

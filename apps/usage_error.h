@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apps/verbs.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "geometry/base/callbacks.h"
 
 namespace CLI {
 class App;

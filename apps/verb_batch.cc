@@ -7,9 +7,9 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/batch/run_batch.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/parallel.h"
+#include "pipelines/batch/run_batch.h"
 
 namespace bodyloom {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/body/convert_body.h"
+#include "pipelines/body/convert_body.h"
 
 namespace bodyloom {
 namespace {

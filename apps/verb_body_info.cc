@@ -10,10 +10,10 @@
 #include "apps/exec_beside.h"
 #include "apps/progress.h"
 #include "apps/verbs.h"
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/pipelines/body/check_body.h"
-#include "bodyloom/pipelines/files.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "pipelines/body/check_body.h"
+#include "pipelines/files.h"
 
 namespace bodyloom {
 namespace {

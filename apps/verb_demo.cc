@@ -6,7 +6,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/demo/run_demo.h"
+#include "pipelines/demo/run_demo.h"
 
 namespace bodyloom {
 

@@ -9,7 +9,7 @@
 #include "apps/shown_motion_options.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/describe/describe_clip.h"
+#include "pipelines/describe/describe_clip.h"
 
 namespace bodyloom {
 namespace {

@@ -11,7 +11,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/detect/detect_clip.h"
+#include "pipelines/detect/detect_clip.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/score/evaluate_track.h"
+#include "pipelines/score/evaluate_track.h"
 
 namespace bodyloom {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/export/export_track.h"
+#include "pipelines/export/export_track.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/score/compare_results.h"
+#include "pipelines/score/compare_results.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/motions/survey_motions.h"
+#include "pipelines/motions/survey_motions.h"
 
 namespace bodyloom {
 namespace {

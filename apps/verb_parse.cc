@@ -10,7 +10,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
+#include "pipelines/photo_avatar/make_photo_person.h"
 
 namespace bodyloom {
 namespace {

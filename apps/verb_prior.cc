@@ -5,7 +5,7 @@
 
 #include "apps/progress.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/prior/learn_prior.h"
+#include "pipelines/prior/learn_prior.h"
 
 namespace bodyloom {
 namespace {

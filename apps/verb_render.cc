@@ -7,7 +7,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/render/render_track.h"
+#include "pipelines/render/render_track.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/run_options.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/track/track_people_clip.h"
+#include "pipelines/track/track_people_clip.h"
 
 namespace bodyloom {
 namespace {

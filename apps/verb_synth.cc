@@ -7,7 +7,7 @@
 #include "apps/synth_options.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
+#include "pipelines/synthesis/synthesize_clip.h"
 
 namespace bodyloom {
 namespace {

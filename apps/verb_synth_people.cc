@@ -7,7 +7,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/synthesis/synthesize_people.h"
+#include "pipelines/synthesis/synthesize_people.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/synth_options.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/synthesis/synthesize_person.h"
+#include "pipelines/synthesis/synthesize_person.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/texture/extract_texture.h"
+#include "pipelines/texture/extract_texture.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/track_options.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "bodyloom/pipelines/track/track_clip.h"
+#include "pipelines/track/track_clip.h"
 
 namespace bodyloom {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/pipelines/body/check_body.h"
-#include "bodyloom/pipelines/detect/detect_dense.h"
+#include "pipelines/body/check_body.h"
+#include "pipelines/detect/detect_dense.h"
 
 namespace CLI {
 class App;

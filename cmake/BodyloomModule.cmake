@@ -20,8 +20,11 @@ function(bodyloom_module name)
   set(simd_sources ${sources})
   list(FILTER simd_sources INCLUDE REGEX "_simd\\.cc$")
   set_source_files_properties(${simd_sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  # Our files include each other from the project's root ("tracking/track_sequence.h"), users <bodyloom/…>: include/bodyloom
+  # holds a link to each folder, as the installed one holds the folders.
   target_include_directories(bodyloom_${name} PUBLIC
-    $<BUILD_INTERFACE:${BODYLOOM_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/bodyloom> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   # Headers that only our source files include are no concern of whoever uses the library.
   list(TRANSFORM ARG_PRIVATE REPLACE "^(nlohmann_json::nlohmann_json)$" "$<BUILD_INTERFACE:\\1>")
   target_compile_features(bodyloom_${name} PUBLIC cxx_std_20)
@@ -56,10 +59,6 @@ function(bodyloom_umbrella)
   set_property(GLOBAL APPEND PROPERTY BODYLOOM_MODULES bodyloom)
   set_property(GLOBAL PROPERTY BODYLOOM_NEEDS_bodyloom ${modules})
 endfunction()
-
-# Headers are included as "bodyloom/tracking/track_sequence.h", in this tree, from add_subdirectory() and once installed
-# alike: include/bodyloom holds a link to each of our folders.
-set(BODYLOOM_INCLUDE_DIR ${PROJECT_SOURCE_DIR}/include)
 
 # Warnings and sanitizers shared by every target of the project.
 function(bodyloom_flags target)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/clip_span.h"
+#include "pipelines/clip_span.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

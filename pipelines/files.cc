@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/files.h"
+#include "pipelines/files.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 namespace fs = std::filesystem;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/report_json.h"
+#include "pipelines/report_json.h"
 
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "data_tools/formats/atomic_file.h"
 
 namespace bodyloom {
 

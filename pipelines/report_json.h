@@ -5,8 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/scene/world_frame.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/scene/world_frame.h"
 
 namespace bodyloom {
 

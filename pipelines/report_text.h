@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "bodyloom/geometry/base/stopwatch.h"
+#include "geometry/base/stopwatch.h"
 
 namespace bodyloom {
 

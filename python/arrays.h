@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/math/arrays.h"
+#include "render/image/image.h"
 
 namespace bodyloom::python {
 

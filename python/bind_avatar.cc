@@ -11,16 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/gaussian_avatar/animate_avatar.h"
-#include "bodyloom/pipelines/gaussian_avatar/shown_avatar.h"
-#include "bodyloom/pipelines/gaussian_avatar/train_avatar.h"
-#include "bodyloom/render/gaussian_avatar/avatar_image.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "pipelines/gaussian_avatar/animate_avatar.h"
+#include "pipelines/gaussian_avatar/shown_avatar.h"
+#include "pipelines/gaussian_avatar/train_avatar.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
+#include "render/gaussian_avatar/avatar_image.h"
 
 namespace bodyloom::python {
 namespace {

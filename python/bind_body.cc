@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"

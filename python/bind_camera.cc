@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/camera.h"
+#include "data_tools/observations/load_cameras.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/camera.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/track_object.h"

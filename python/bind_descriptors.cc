@@ -11,17 +11,17 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/render/uv_maps/descriptor_frames.h"
-#include "bodyloom/render/uv_maps/live_descriptors.h"
+#include "data_tools/descriptors/describe_track.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/scene/track.h"
+#include "pipelines/files.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
+#include "render/uv_maps/descriptor_frames.h"
+#include "render/uv_maps/live_descriptors.h"
 
 namespace bodyloom::python {
 namespace {

@@ -9,10 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/observations/keypoint_conventions.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/observations/observations_npz.h"
+#include "geometry/base/check.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/track_object.h"

@@ -9,14 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/tracking/builtin_models.h"
-#include "bodyloom/tracking/live/live_tracker.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
+#include "tracking/builtin_models.h"
+#include "tracking/live/live_tracker.h"
 
 namespace bodyloom::python {
 namespace {

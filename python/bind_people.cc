@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/detect/detect_people.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/track/track_people_clip.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/people.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "pipelines/detect/detect_people.h"
+#include "pipelines/files.h"
+#include "pipelines/track/track_people_clip.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"

@@ -12,15 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
-#include "bodyloom/pipelines/photo_avatar/person_folder.h"
-#include "bodyloom/render/photo_avatar/wear_clothes.h"
+#include "geometry/base/check.h"
+#include "pipelines/files.h"
+#include "pipelines/photo_avatar/make_photo_person.h"
+#include "pipelines/photo_avatar/person_folder.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
+#include "render/photo_avatar/wear_clothes.h"
 
 namespace bodyloom::python {
 namespace {

@@ -11,11 +11,11 @@
 #include <variant>
 #include <vector>
 
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/render/render_track.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/scene/track.h"
+#include "pipelines/render/render_track.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"

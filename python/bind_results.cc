@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/export/export_track.h"
-#include "bodyloom/pipelines/score/evaluate_track.h"
+#include "geometry/base/check.h"
+#include "pipelines/export/export_track.h"
+#include "pipelines/score/evaluate_track.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"

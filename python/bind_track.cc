@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/base/check.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/track_object.h"

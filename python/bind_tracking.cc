@@ -9,11 +9,11 @@
 #include <utility>
 #include <variant>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/track/solve_track.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/base/check.h"
+#include "pipelines/track/solve_track.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"

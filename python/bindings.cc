@@ -3,8 +3,8 @@
 
 #include <set>
 
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/observations/keypoint_conventions.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom::python {
 

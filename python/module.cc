@@ -2,7 +2,7 @@
 // The Python module bodyloom._bodyloom; python/bodyloom/__init__.py hands its names on. docs/python.md.
 #include <pybind11/pybind11.h>
 
-#include "bodyloom/geometry/base/callbacks.h"
+#include "geometry/base/callbacks.h"
 #include "python/bindings.h"
 
 PYBIND11_MODULE(_bodyloom, module) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom::python {
 namespace {

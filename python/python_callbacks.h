@@ -12,14 +12,14 @@
 #include <utility>
 #include <variant>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/pipelines/track/scene_inputs.h"
-#include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/detection/frame_detector.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "pipelines/track/scene_inputs.h"
+#include "pipelines/track/track_request.h"
 #include "python/track_object.h"
+#include "tracking/detection/frame_detector.h"
 
 namespace bodyloom::python {
 

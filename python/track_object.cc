@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/track_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/track_io.h"
 
 namespace bodyloom::python {
 namespace {

@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom::python {
 

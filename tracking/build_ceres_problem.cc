@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/build_ceres_problem.h"
+#include "tracking/build_ceres_problem.h"
 
 #include <utility>
 
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/builtin_models.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/problem/input_checks.h"
+#include "geometry/base/parallel.h"
+#include "tracking/builtin_models.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/problem/input_checks.h"
 
 namespace bodyloom {
 

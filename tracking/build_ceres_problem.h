@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/solvers/ceres_problem.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/solvers/ceres_problem.h"
 
 namespace bodyloom {
 

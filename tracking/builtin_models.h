@@ -2,9 +2,9 @@
 /// The built-in body, pose prior and lifter, as defaults of the tracker.
 #pragma once
 
-#include "bodyloom/tracking/live/live_options.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "tracking/live/live_options.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

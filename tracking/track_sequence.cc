@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/track_sequence.h"
+#include "tracking/track_sequence.h"
 
-#include "bodyloom/tracking/builtin_models.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "tracking/builtin_models.h"
+#include "tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 

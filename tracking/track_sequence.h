@@ -3,10 +3,10 @@
 /// How it works: docs/tracking.md.
 #pragma once
 
-#include "bodyloom/tracking/clip/track_plan.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "tracking/clip/track_plan.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

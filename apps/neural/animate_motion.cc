@@ -10,8 +10,8 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/progress.h"
 #include "apps/shown_motion_options.h"
-#include "bodyloom/pipelines/animate/motion_errors.h"
-#include "bodyloom/pipelines/neural/motion/animate_motion.h"
+#include "pipelines/animate/motion_errors.h"
+#include "pipelines/neural/motion/animate_motion.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/pipelines/neural/photo/photo_animation.h"
+#include "pipelines/neural/photo/photo_animation.h"
 
 namespace CLI {
 class App;

@@ -8,7 +8,7 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/score_options.h"
 #include "apps/progress.h"
-#include "bodyloom/pipelines/neural/photo/animate_photo.h"
+#include "pipelines/neural/photo/animate_photo.h"
 
 namespace bodyloom {
 namespace {

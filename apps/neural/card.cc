@@ -6,7 +6,7 @@
 
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "pipelines/neural/weights_folder.h"
 
 namespace bodyloom {
 namespace {

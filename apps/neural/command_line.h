@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/pipelines/neural/motion/animate_motion.h"
+#include "pipelines/neural/motion/animate_motion.h"
 
 namespace bodyloom {
 

@@ -10,8 +10,8 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/progress.h"
 #include "apps/usage_error.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/pipelines/neural/densepose_detector.h"
+#include "neural/base/runtime.h"
+#include "pipelines/neural/densepose_detector.h"
 
 namespace {
 

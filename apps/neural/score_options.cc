@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/neural/animate_options.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "bodyloom/pipelines/neural/photo/photo_animation.h"
-#include "bodyloom/pipelines/neural/score/score_people.h"
+#include "pipelines/neural/photo/photo_animation.h"
+#include "pipelines/neural/score/score_people.h"
 
 namespace CLI {
 class App;

@@ -9,8 +9,8 @@
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
 #include "apps/progress.h"
-#include "bodyloom/pipelines/neural/guided/train_guided_renderer.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "pipelines/neural/guided/train_guided_renderer.h"
+#include "pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 namespace {

@@ -7,8 +7,8 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_report.h"
 #include "apps/progress.h"
-#include "bodyloom/pipelines/neural/lifter/train_lifter_network.h"
-#include "bodyloom/pipelines/report_text.h"
+#include "pipelines/neural/lifter/train_lifter_network.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

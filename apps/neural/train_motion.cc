@@ -11,9 +11,9 @@
 #include "apps/neural/training_report.h"
 #include "apps/progress.h"
 #include "apps/shown_motion_options.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/animate/motion_errors.h"
-#include "bodyloom/pipelines/neural/motion/train_motion_renderer.h"
+#include "geometry/base/check.h"
+#include "pipelines/animate/motion_errors.h"
+#include "pipelines/neural/motion/train_motion_renderer.h"
 
 namespace bodyloom {
 namespace {

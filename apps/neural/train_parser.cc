@@ -9,8 +9,8 @@
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
 #include "apps/progress.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/pipelines/neural/parser/train_clothes_parser.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "pipelines/neural/parser/train_clothes_parser.h"
 
 namespace bodyloom {
 namespace {

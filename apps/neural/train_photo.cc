@@ -8,8 +8,8 @@
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
 #include "apps/progress.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/pipelines/neural/photo/train_photo_renderer.h"
+#include "pipelines/neural/photo/people_data.h"
+#include "pipelines/neural/photo/train_photo_renderer.h"
 
 namespace bodyloom {
 namespace {

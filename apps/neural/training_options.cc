@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bodyloom/pipelines/clip_span.h"
+#include "pipelines/clip_span.h"
 
 namespace bodyloom {
 

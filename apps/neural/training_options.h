@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/motion/rollout_plan.h"
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
+#include "neural/motion/rollout_plan.h"
+#include "neural/training/training_run.h"
+#include "pipelines/neural/motion/motion_data.h"
 
 namespace CLI {
 class App;

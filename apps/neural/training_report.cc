@@ -8,7 +8,7 @@
 
 #include "apps/neural/animate_options.h"
 #include "apps/neural/score_options.h"
-#include "bodyloom/pipelines/report_text.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 

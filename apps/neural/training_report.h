@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/pipelines/neural/guided/animate_guided.h"
+#include "neural/training/training_run.h"
+#include "pipelines/neural/guided/animate_guided.h"
 
 namespace bodyloom {
 

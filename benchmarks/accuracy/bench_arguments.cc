@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {

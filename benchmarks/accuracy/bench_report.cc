@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/check.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "benchmarks/accuracy/bench_arguments.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/body_truth.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/descriptors/person_frames.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/body_truth.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/descriptors/person_frames.h"
 
 namespace bodyloom {
 namespace {

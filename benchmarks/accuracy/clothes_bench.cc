@@ -16,13 +16,13 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/render/garment/fit_clothes.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/multi_person_dataset.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "geometry/base/stopwatch.h"
+#include "render/garment/fit_clothes.h"
 
 namespace bodyloom {
 namespace {

@@ -13,15 +13,15 @@
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/accuracy/dense_clips.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/truth_evaluation.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
 #include "tests/support/paths.h"
+#include "tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 namespace {

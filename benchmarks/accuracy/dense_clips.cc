@@ -6,13 +6,13 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/evaluation/metrics_image.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/problem/frame_cost.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
+#include "data_tools/evaluation/metrics_image.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/problem/frame_cost.h"
+#include "tracking/terms/dense/dense.h"
 
 namespace bodyloom {
 

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/evaluation/cramer_rao.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/evaluation/cramer_rao.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

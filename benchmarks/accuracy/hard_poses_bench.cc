@@ -16,17 +16,17 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/math/procrustes.h"
-#include "bodyloom/render/view/contact_sheet.h"
-#include "bodyloom/render/view/overlay.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/math/procrustes.h"
+#include "render/view/contact_sheet.h"
+#include "render/view/overlay.h"
 #include "tests/support/paths.h"
+#include "tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 namespace {

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/initialise/swap_repair.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "tracking/initialise/swap_repair.h"
+#include "tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 namespace {

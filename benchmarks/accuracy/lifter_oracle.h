@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/lifter_weights.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/lifter_weights.h"
+#include "geometry/scene/observations.h"
+#include "tracking/lifter/lift_keypoints.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -21,14 +21,14 @@
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/accuracy/dense_clips.h"
 #include "benchmarks/accuracy/lifter_oracle.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/motion/motion_library.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/motion/motion_library.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/base/check.h"
+#include "tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 namespace {

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "benchmarks/accuracy/bench_arguments.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/render/texture/complete/guess_unseen.h"
-#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "pipelines/neural/photo/people_data.h"
+#include "render/texture/complete/guess_unseen.h"
+#include "render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
 namespace {

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "benchmarks/accuracy/bench_arguments.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "data_tools/datasets/single_person_dataset.h"
 
 namespace bodyloom {
 namespace {

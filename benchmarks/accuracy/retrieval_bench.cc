@@ -21,11 +21,11 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/motion_retrieval.h"
-#include "bodyloom/data_tools/evaluation/region_retrieval.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/motion_retrieval.h"
+#include "data_tools/evaluation/region_retrieval.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

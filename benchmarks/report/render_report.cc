@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

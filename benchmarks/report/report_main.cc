@@ -10,8 +10,8 @@
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/report/compare_reports.h"
 #include "benchmarks/report/render_report.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/check.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {

@@ -13,8 +13,8 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/speed/moving_body.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

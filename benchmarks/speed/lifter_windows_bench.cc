@@ -16,15 +16,15 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/motion_library.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/render/view/overlay_landmarks.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/motion_library.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/lifter/lifter_windows.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/stopwatch.h"
+#include "render/view/overlay_landmarks.h"
 
 namespace bodyloom {
 namespace {

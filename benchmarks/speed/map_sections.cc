@@ -8,14 +8,14 @@
 #include <span>
 
 #include "benchmarks/speed/moving_body.h"
-#include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/body/normals_simd.h"
-#include "bodyloom/geometry/uv_maps/uv_bake.h"
-#include "bodyloom/geometry/uv_maps/uv_charts.h"
-#include "bodyloom/render/texture/uv_sample.h"
+#include "data_tools/descriptors/describe_track.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/body/normals.h"
+#include "geometry/body/normals_simd.h"
+#include "geometry/uv_maps/uv_bake.h"
+#include "geometry/uv_maps/uv_charts.h"
+#include "render/texture/uv_sample.h"
 
 namespace bodyloom {
 

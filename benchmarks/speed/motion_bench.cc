@@ -13,13 +13,13 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/speed/moving_body.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/neural/motion/person_box.h"
-#include "bodyloom/neural/motion/roll_out.h"
-#include "bodyloom/neural/motion/train_motion.h"
-#include "bodyloom/neural/networks/architecture_card.h"
-#include "bodyloom/neural/networks/blocks.h"
+#include "neural/base/runtime.h"
+#include "neural/motion/motion_model.h"
+#include "neural/motion/person_box.h"
+#include "neural/motion/roll_out.h"
+#include "neural/motion/train_motion.h"
+#include "neural/networks/architecture_card.h"
+#include "neural/networks/blocks.h"
 
 namespace bodyloom {
 namespace {

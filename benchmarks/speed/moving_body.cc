@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 

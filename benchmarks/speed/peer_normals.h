@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

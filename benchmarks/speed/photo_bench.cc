@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "benchmarks/accuracy/bench_arguments.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/neural/networks/architecture_card.h"
-#include "bodyloom/neural/photo/photo_model.h"
+#include "geometry/base/stopwatch.h"
+#include "neural/base/runtime.h"
+#include "neural/guided/coherent_maps.h"
+#include "neural/guided/guided_model.h"
+#include "neural/networks/architecture_card.h"
+#include "neural/photo/photo_model.h"
 
 namespace bodyloom {
 namespace {

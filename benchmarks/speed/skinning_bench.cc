@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/body/skinning.h"
 #include "tests/geometry/random_body.h"
 
 namespace bodyloom {

@@ -7,7 +7,7 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/speed/moving_body.h"
-#include "bodyloom/data_tools/evaluation/ssim.h"
+#include "data_tools/evaluation/ssim.h"
 
 namespace bodyloom {
 namespace {

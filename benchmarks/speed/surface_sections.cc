@@ -7,8 +7,8 @@
 
 #include "benchmarks/speed/moving_body.h"
 #include "benchmarks/speed/peer_normals.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
+#include "geometry/body/normals.h"
+#include "geometry/uv_maps/surface_velocity.h"
 
 namespace bodyloom {
 

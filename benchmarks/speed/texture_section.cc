@@ -8,14 +8,14 @@
 #include <utility>
 
 #include "benchmarks/speed/moving_body.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
-#include "bodyloom/geometry/uv_maps/uv_charts.h"
-#include "bodyloom/render/raster/visible_points.h"
-#include "bodyloom/render/texture/complete/uv_fill.h"
-#include "bodyloom/render/texture/texture_extract.h"
-#include "bodyloom/render/texture/uv_sample.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/uv_maps/surface_velocity.h"
+#include "geometry/uv_maps/uv_charts.h"
+#include "render/raster/visible_points.h"
+#include "render/texture/complete/uv_fill.h"
+#include "render/texture/texture_extract.h"
+#include "render/texture/uv_sample.h"
 
 namespace bodyloom {
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "benchmarks/speed/moving_body.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "geometry/uv_maps/descriptor_options.h"
+#include "geometry/uv_maps/surface_velocity.h"
 
 namespace bodyloom {
 

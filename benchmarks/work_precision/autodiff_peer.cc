@@ -10,21 +10,21 @@
 #include <set>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
-#include "bodyloom/tracking/solvers/residuals/ceres_functions.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/initialiser.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
-#include "bodyloom/tracking/terms/landmarks.h"
-#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
-#include "bodyloom/tracking/terms/part_labels/part_label_term.h"
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 #include "tests/tracking/jet_twin.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/solvers/residuals/ceres_functions.h"
+#include "tracking/solvers/solve_sequence.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/initialiser.h"
+#include "tracking/terms/joint_limits.h"
+#include "tracking/terms/landmarks.h"
+#include "tracking/terms/lifted/lifted_pose.h"
+#include "tracking/terms/part_labels/part_label_term.h"
+#include "tracking/terms/pose_prior/pose_prior.h"
+#include "tracking/terms/rendered_uv/rendered_uv_term.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom {
 namespace {

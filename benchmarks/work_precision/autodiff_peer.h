@@ -3,8 +3,8 @@
 /// frame's prior, every derivative by Ceres' automatic differentiation, rotations as plain axis-angle blocks.
 #pragma once
 
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

@@ -11,13 +11,13 @@
 
 #include "benchmarks/accuracy/dense_clips.h"
 #include "benchmarks/work_precision/autodiff_peer.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/body/normals.h"
+#include "geometry/body/skinning.h"
+#include "geometry/uv_maps/surface_velocity.h"
 
 namespace bodyloom {
 

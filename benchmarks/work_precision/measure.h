@@ -11,9 +11,9 @@
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
 #include "benchmarks/work_precision/work_problem.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "tracking/solvers/solve_sequence.h"
 
 namespace bodyloom {
 

@@ -9,7 +9,7 @@
 
 #include "benchmarks/work_precision/sections.h"
 #include "benchmarks/work_precision/work_problem.h"
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 

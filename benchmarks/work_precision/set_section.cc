@@ -5,8 +5,8 @@
 
 #include "benchmarks/accuracy/dense_clips.h"
 #include "benchmarks/work_precision/sections.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -9,15 +9,15 @@
 #include "benchmarks/accuracy/dense_clips.h"
 #include "benchmarks/work_precision/measure.h"
 #include "benchmarks/work_precision/sections.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/descriptors/describe_track.h"
+#include "data_tools/evaluation/truth_evaluation.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/motion/load_motion.h"
+#include "geometry/base/check.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tracking/clip/clip_fit.h"
 
 namespace bodyloom {
 namespace {

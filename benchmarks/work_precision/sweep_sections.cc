@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "benchmarks/work_precision/sections.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/problem/frame_cost.h"
+#include "geometry/base/check.h"
+#include "tracking/problem/frame_cost.h"
 
 namespace bodyloom {
 

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "benchmarks/work_precision/sections.h"
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 #include "tests/support/paths.h"
 
 namespace bodyloom {

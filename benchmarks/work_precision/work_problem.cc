@@ -7,17 +7,17 @@
 #include <numeric>
 
 #include "benchmarks/accuracy/dense_clips.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/pose_prior/pose_prior.h"
 
 namespace bodyloom {
 namespace {

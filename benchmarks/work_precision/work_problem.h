@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/terms/pose_prior/pose_prior.h"
 
 namespace bodyloom {
 

@@ -27,10 +27,10 @@
 
 #include <Eigen/Core>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
-#include "bodyloom/render/gaussian_avatar/learning/avatar_trainer.h"
+#include "data_tools/formats/npz.h"
+#include "render/gaussian_avatar/avatar_frame.h"
+#include "render/gaussian_avatar/gaussian_body.h"
+#include "render/gaussian_avatar/learning/avatar_trainer.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/avatar/gaussian_ply.h"
+#include "data_tools/avatar/gaussian_ply.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -8,8 +8,8 @@
 #include <bit>
 #include <cmath>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

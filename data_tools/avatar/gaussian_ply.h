@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "bodyloom/render/splat/camera_gaussians.h"
+#include "render/splat/camera_gaussians.h"
 
 namespace bodyloom {
 

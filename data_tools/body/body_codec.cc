@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/body_codec.h"
+#include "data_tools/body/body_codec.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/zip.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/zip.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

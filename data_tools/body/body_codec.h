@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "data_tools/formats/ndarray.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/body_compact.h"
+#include "data_tools/body/body_compact.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_codec.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/body/body_codec.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -21,8 +21,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/formats/npz.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/body_faces.h"
+#include "data_tools/body/body_faces.h"
 
 #include <matio.h>
 #include <algorithm>
@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/formats/mat_headers.h"
-#include "bodyloom/data_tools/formats/obj.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/formats/mat_headers.h"
+#include "data_tools/formats/obj.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

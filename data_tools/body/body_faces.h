@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/body_io.h"
+#include "data_tools/body/body_io.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_compact.h"
-#include "bodyloom/data_tools/body/body_smpl.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/zip.h"
+#include "data_tools/body/body_compact.h"
+#include "data_tools/body/body_smpl.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/zip.h"
 
 namespace bodyloom {
 namespace {

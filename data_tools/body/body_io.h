@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

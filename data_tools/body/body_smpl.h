@@ -10,9 +10,9 @@
 #include <map>
 #include <string>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/pickle.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/pickle.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 
-#include "bodyloom/data_tools/body/body_io.h"
+#include "data_tools/body/body_io.h"
 
 // Made by bodyloom_embed() in data_tools/CMakeLists.txt.
 extern "C" {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <string>
 
-#include "bodyloom/data_tools/body_making/make_builtin_body.h"
-#include "bodyloom/geometry/body/body_model.h"
+#include "data_tools/body_making/make_builtin_body.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/repair_body.h"
+#include "data_tools/body/repair_body.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_landmarks.h"
-#include "bodyloom/geometry/mesh/mesh_check.h"
+#include "data_tools/body/body_landmarks.h"
+#include "geometry/mesh/mesh_check.h"
 
 namespace bodyloom {
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body_making/cage.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "data_tools/body_making/cage.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

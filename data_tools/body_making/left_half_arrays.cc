@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body_making/left_half_arrays.h"
+#include "data_tools/body_making/left_half_arrays.h"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

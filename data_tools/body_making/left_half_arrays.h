@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body_making/body_charts.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "data_tools/body_making/body_charts.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

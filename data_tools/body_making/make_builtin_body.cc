@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body_making/make_builtin_body.h"
+#include "data_tools/body_making/make_builtin_body.h"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body_making/body_charts.h"
-#include "bodyloom/data_tools/body_making/cage.h"
-#include "bodyloom/data_tools/body_making/left_half_arrays.h"
-#include "bodyloom/data_tools/body_making/subdivision.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/body_making/body_charts.h"
+#include "data_tools/body_making/cage.h"
+#include "data_tools/body_making/left_half_arrays.h"
+#include "data_tools/body_making/subdivision.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/body_making/openmesh_catmull_clark.h"
-#include "bodyloom/geometry/body/body_model.h"
+#include "data_tools/body_making/openmesh_catmull_clark.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

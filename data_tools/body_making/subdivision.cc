@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body_making/subdivision.h"
+#include "data_tools/body_making/subdivision.h"
 
 #include <algorithm>
 #include <map>
 #include <unordered_map>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -14,8 +14,8 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/body_making/cage.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "data_tools/body_making/cage.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/body_truth.h"
+#include "data_tools/datasets/body_truth.h"
 
-#include "bodyloom/data_tools/datasets/photo_segmentation.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/datasets/photo_segmentation.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

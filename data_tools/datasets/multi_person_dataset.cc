@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
+#include "data_tools/datasets/multi_person_dataset.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
+#include "geometry/base/check.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

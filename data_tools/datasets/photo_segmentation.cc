@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/photo_segmentation.h"
+#include "data_tools/datasets/photo_segmentation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/photo.hpp>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image_mat.h"
+#include "geometry/base/check.h"
+#include "render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/person_label.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/person_label.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "data_tools/datasets/single_person_dataset.h"
 
 #include <algorithm>
 #include <array>
@@ -10,13 +10,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image_mat.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "render/image/image_mat.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

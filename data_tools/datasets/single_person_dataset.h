@@ -22,9 +22,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/person_label.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/scene/person_label.h"
+#include "geometry/scene/track.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/dense_history.h"
+#include "data_tools/descriptors/dense_history.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

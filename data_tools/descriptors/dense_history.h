@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/estimated_pixels.h"
-#include "bodyloom/data_tools/descriptors/person_frames.h"
+#include "data_tools/descriptors/estimated_pixels.h"
+#include "data_tools/descriptors/person_frames.h"
 
 namespace bodyloom {
 

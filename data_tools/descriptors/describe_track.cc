@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/describe_track.h"
+#include "data_tools/descriptors/describe_track.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "bodyloom/data_tools/descriptors/descriptor_preview.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npy_stream.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/render/uv_maps/descriptor_maps.h"
+#include "data_tools/descriptors/descriptor_preview.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npy_stream.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/stopwatch.h"
+#include "render/uv_maps/descriptor_maps.h"
 
 namespace bodyloom {
 

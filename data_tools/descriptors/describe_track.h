@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/uv_maps/descriptor_frames.h"
+#include "render/image/image.h"
+#include "render/uv_maps/descriptor_frames.h"
 
 namespace bodyloom {
 

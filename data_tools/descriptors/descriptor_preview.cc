@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/descriptor_preview.h"
+#include "data_tools/descriptors/descriptor_preview.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/view/caption.h"
+#include "data_tools/descriptors/describe_track.h"
+#include "data_tools/formats/ndarray.h"
+#include "render/image/image.h"
+#include "render/view/caption.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/estimated_pixels.h"
+#include "data_tools/descriptors/estimated_pixels.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/observations/densepose_iuv.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/observations/densepose_iuv.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/render/texture/chart_lookup.h"
-#include "bodyloom/render/view/person_window.h"
+#include "geometry/body/body_model.h"
+#include "render/texture/chart_lookup.h"
+#include "render/view/person_window.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/person_frames.h"
+#include "data_tools/descriptors/person_frames.h"
 
 #include <unistd.h>
 
@@ -10,15 +10,15 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/data_tools/formats/mapped_npy.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "data_tools/descriptors/describe_track.h"
+#include "data_tools/formats/mapped_npy.h"
+#include "data_tools/formats/ndarray.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track_edits.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/body_truth.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
-#include "bodyloom/render/view/person_window.h"
+#include "data_tools/datasets/body_truth.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "geometry/uv_maps/descriptor_options.h"
+#include "render/view/person_window.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/photo_maps.h"
+#include "data_tools/descriptors/photo_maps.h"
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -8,12 +8,12 @@
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/uv_maps/uv_bake.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/texture/texel_sight.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "geometry/base/check.h"
+#include "geometry/uv_maps/uv_bake.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/texture/texel_sight.h"
+#include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 namespace {

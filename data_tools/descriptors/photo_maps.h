@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/estimated_pixels.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/view/person_window.h"
+#include "data_tools/descriptors/estimated_pixels.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/view/person_window.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/estimates/body_estimate.h"
+#include "data_tools/estimates/body_estimate.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

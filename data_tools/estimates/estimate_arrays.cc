@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/estimates/estimate_arrays.h"
+#include "data_tools/estimates/estimate_arrays.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_landmarks.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/body/body_landmarks.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/estimates/body_estimate.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/pickle.h"
+#include "data_tools/estimates/body_estimate.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/pickle.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/estimates/hmr_readers.h"
+#include "data_tools/estimates/hmr_readers.h"
 
 #include <cmath>
 #include <numeric>
 
-#include "bodyloom/data_tools/body/body_landmarks.h"
-#include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/body/body_landmarks.h"
+#include "data_tools/estimates/estimate_arrays.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

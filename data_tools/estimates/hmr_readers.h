@@ -11,9 +11,9 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/estimates/body_estimate.h"
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/data_tools/formats/weights_file.h"
+#include "data_tools/estimates/body_estimate.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/formats/weights_file.h"
 
 namespace bodyloom {
 

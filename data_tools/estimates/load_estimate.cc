@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/estimates/load_estimate.h"
+#include "data_tools/estimates/load_estimate.h"
 
 #include <filesystem>
 
-#include "bodyloom/data_tools/body/body_landmarks.h"
-#include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/data_tools/estimates/hmr_readers.h"
-#include "bodyloom/data_tools/estimates/phalp_reader.h"
-#include "bodyloom/data_tools/estimates/sam3d_body_reader.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/inflate.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/data_tools/formats/torch_weights.h"
-#include "bodyloom/data_tools/formats/zip.h"
-#include "bodyloom/data_tools/motion/amass.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/body/body_landmarks.h"
+#include "data_tools/estimates/estimate_arrays.h"
+#include "data_tools/estimates/hmr_readers.h"
+#include "data_tools/estimates/phalp_reader.h"
+#include "data_tools/estimates/sam3d_body_reader.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/inflate.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/formats/torch_weights.h"
+#include "data_tools/formats/zip.h"
+#include "data_tools/motion/amass.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/estimates/body_estimate.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/estimates/body_estimate.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -15,8 +15,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/estimates/body_estimate.h"
-#include "bodyloom/data_tools/formats/pickle.h"
+#include "data_tools/estimates/body_estimate.h"
+#include "data_tools/formats/pickle.h"
 
 namespace bodyloom {
 

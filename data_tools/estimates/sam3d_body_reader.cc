@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/estimates/sam3d_body_reader.h"
+#include "data_tools/estimates/sam3d_body_reader.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -10,10 +10,10 @@
 #include <regex>
 #include <utility>
 
-#include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/observations/frame_numbers.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/estimates/estimate_arrays.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/observations/frame_numbers.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/estimates/body_estimate.h"
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/estimates/body_estimate.h"
+#include "data_tools/formats/npz.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/aist_evaluation.h"
+#include "data_tools/evaluation/aist_evaluation.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,17 +7,17 @@
 #include <filesystem>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/evaluation/vertex_errors.h"
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/data_tools/motion/aist_motion.h"
-#include "bodyloom/data_tools/observations/aist_reader.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/vertex_errors.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/motion/aist_motion.h"
+#include "data_tools/observations/aist_reader.h"
+#include "data_tools/observations/load_cameras.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

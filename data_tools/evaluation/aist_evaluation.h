@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/data_tools/evaluation/held_out_views.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/held_out_views.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/closed_part.h"
+#include "data_tools/evaluation/closed_part.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

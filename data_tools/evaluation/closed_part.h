@@ -16,7 +16,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

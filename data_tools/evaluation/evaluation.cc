@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/evaluation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/held_out_views.h"
+#include "data_tools/evaluation/held_out_views.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/evaluation/metrics_image.h"
-#include "bodyloom/data_tools/evaluation/sigma_reliability.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/metrics_image.h"
+#include "data_tools/evaluation/sigma_reliability.h"
+#include "geometry/base/check.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/metrics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/math/procrustes.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "geometry/math/procrustes.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

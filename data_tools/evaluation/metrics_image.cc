@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/metrics_image.h"
+#include "data_tools/evaluation/metrics_image.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

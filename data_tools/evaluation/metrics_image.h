@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/evaluation/metrics.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

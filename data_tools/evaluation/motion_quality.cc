@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/motion_quality.h"
+#include "data_tools/evaluation/motion_quality.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/motion_floor.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/motion_floor.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/smpl_rest.h"
+#include "geometry/base/check.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/track.h"
+#include "tracking/terms/joint_limits.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/motion_retrieval.h"
+#include "data_tools/evaluation/motion_retrieval.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/descriptors/person_frames.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/data_tools/evaluation/turning_person.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
+#include "data_tools/descriptors/person_frames.h"
+#include "data_tools/evaluation/turning_person.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "geometry/uv_maps/descriptor_options.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
+#include "data_tools/evaluation/part_label_evaluation.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <numeric>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 namespace {

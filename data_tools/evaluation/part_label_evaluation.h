@@ -2,10 +2,10 @@
 /// A track against part labels of the same video: how well the rendered body covers the person, and each part itself.
 #pragma once
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/region_retrieval.h"
+#include "data_tools/evaluation/region_retrieval.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
 
-#include "bodyloom/data_tools/descriptors/photo_maps.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "data_tools/descriptors/photo_maps.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
+#include "geometry/uv_maps/uv_texels.h"
 
 namespace bodyloom {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/data_tools/evaluation/motion_retrieval.h"
-#include "bodyloom/geometry/body/body_model.h"
+#include "data_tools/descriptors/person_frames.h"
+#include "data_tools/evaluation/motion_retrieval.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/self_penetration.h"
+#include "data_tools/evaluation/self_penetration.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
-#include "bodyloom/data_tools/evaluation/closed_part.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/skinning.h"
+#include "data_tools/evaluation/closed_part.h"
+#include "data_tools/evaluation/metrics.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/units.h"
+#include "geometry/body/skinning.h"
 
 namespace bodyloom {
 namespace {

@@ -22,9 +22,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/sigma_reliability.h"
+#include "data_tools/evaluation/sigma_reliability.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/evaluation/metrics.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

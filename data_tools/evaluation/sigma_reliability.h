@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

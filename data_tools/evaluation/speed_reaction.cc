@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/speed_reaction.h"
+#include "data_tools/evaluation/speed_reaction.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/evaluation/image_metrics.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/uv_maps/velocity_stencil.h"
+#include "data_tools/evaluation/image_metrics.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/uv_maps/velocity_stencil.h"
 
 namespace bodyloom {
 namespace {

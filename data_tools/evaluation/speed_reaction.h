@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/ssim.h"
+#include "data_tools/evaluation/ssim.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <limits>
 #include <numeric>
 
-#include "bodyloom/data_tools/evaluation/ssim_rows_simd.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/evaluation/ssim_rows_simd.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

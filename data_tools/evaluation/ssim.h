@@ -25,7 +25,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/image_metrics.h"
+#include "data_tools/evaluation/image_metrics.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
+#include "data_tools/evaluation/triangulated_clip.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -9,11 +9,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/evaluation/metrics_image.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/metrics_image.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/observations/load_detections.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
+#include "data_tools/evaluation/truth_evaluation.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/evaluation/sigma_reliability.h"
-#include "bodyloom/data_tools/evaluation/vertex_errors.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/posed_body.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/sigma_reliability.h"
+#include "data_tools/evaluation/vertex_errors.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
 
 namespace bodyloom {
 namespace {

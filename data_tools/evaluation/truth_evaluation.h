@@ -2,10 +2,10 @@
 /// A track against a known truth: synthetic clips, where body, pose, shape and camera are known.
 #pragma once
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/data_tools/evaluation/vertex_errors.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/vertex_errors.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

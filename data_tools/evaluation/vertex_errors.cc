@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/vertex_errors.h"
+#include "data_tools/evaluation/vertex_errors.h"
 
 #include <algorithm>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
 
 namespace bodyloom {
 namespace {

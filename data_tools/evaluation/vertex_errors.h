@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/evaluation/metrics_image.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/metrics_image.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/world_drift.h"
+#include "data_tools/evaluation/world_drift.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/procrustes.h"
+#include "data_tools/evaluation/metrics.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/procrustes.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/export/markers.h"
+#include "data_tools/export/markers.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/export/camera_writers.h"
+#include "data_tools/export/camera_writers.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -12,9 +12,9 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/export/export_scene.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/world_frame.h"
+#include "data_tools/export/export_scene.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/world_frame.h"
 
 namespace bodyloom {
 

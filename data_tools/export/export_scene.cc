@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/export/export_scene.h"
+#include "data_tools/export/export_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <map>
 #include <utility>
 
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/motion/motion_tools.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

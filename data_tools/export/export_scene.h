@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/scene/world_frame.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/track.h"
+#include "geometry/scene/world_frame.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/export/glb_writer.h"
+#include "data_tools/export/glb_writer.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "bodyloom/data_tools/export/glb_buffer.h"
-#include "bodyloom/data_tools/export/skinned_mesh.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/export/glb_buffer.h"
+#include "data_tools/export/skinned_mesh.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/export/export_scene.h"
+#include "data_tools/export/export_scene.h"
 
 namespace bodyloom {
 

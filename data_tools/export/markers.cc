@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/export/markers.h"
+#include "data_tools/export/markers.h"
 
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/export/skinned_mesh.h"
+#include "data_tools/export/skinned_mesh.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/normals.h"
+#include "geometry/base/check.h"
+#include "geometry/body/normals.h"
 
 namespace bodyloom {
 namespace {

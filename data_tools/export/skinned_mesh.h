@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/data_tools/export/export_scene.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "data_tools/export/export_scene.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

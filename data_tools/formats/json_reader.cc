@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/json_reader.h"
+#include "data_tools/formats/json_reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
 
 namespace bodyloom {
 

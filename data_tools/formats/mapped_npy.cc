@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/mapped_npy.h"
+#include "data_tools/formats/mapped_npy.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -12,10 +12,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/element_type.h"
-#include "bodyloom/data_tools/formats/npy_header.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/element_type.h"
+#include "data_tools/formats/npy_header.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/mat_headers.h"
+#include "data_tools/formats/mat_headers.h"
 
 #include <zlib.h>
 
@@ -11,7 +11,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/npy_header.h"
+#include "data_tools/formats/npy_header.h"
 
 #include <cctype>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/element_type.h"
+#include "data_tools/formats/element_type.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/npy_stream.h"
+#include "data_tools/formats/npy_stream.h"
 
 #include <fcntl.h>
 #include <sys/uio.h>
@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/element_type.h"
-#include "bodyloom/data_tools/formats/npy_header.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/element_type.h"
+#include "data_tools/formats/npy_header.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/ndarray.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/formats/npz.h"
 
 #include <array>
 #include <stdexcept>
@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/element_type.h"
-#include "bodyloom/data_tools/formats/npy_header.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/formats/zip.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/element_type.h"
+#include "data_tools/formats/npy_header.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/formats/zip.h"
 
 namespace bodyloom {
 namespace {

@@ -10,7 +10,7 @@
 #include <map>
 #include <string>
 
-#include "bodyloom/data_tools/formats/ndarray.h"
+#include "data_tools/formats/ndarray.h"
 
 namespace bodyloom {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

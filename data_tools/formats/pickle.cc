@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/pickle.h"
+#include "data_tools/formats/pickle.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -7,10 +7,10 @@
 #include <unordered_map>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/inflate.h"
-#include "bodyloom/data_tools/formats/pickle_machine.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/inflate.h"
+#include "data_tools/formats/pickle_machine.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -26,7 +26,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/ndarray.h"
+#include "data_tools/formats/ndarray.h"
 
 namespace bodyloom {
 

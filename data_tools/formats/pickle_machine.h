@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "bodyloom/data_tools/formats/pickle_node.h"
+#include "data_tools/formats/pickle_node.h"
 
 namespace bodyloom {
 

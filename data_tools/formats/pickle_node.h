@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/pickle.h"
+#include "data_tools/formats/pickle.h"
 
 namespace bodyloom {
 

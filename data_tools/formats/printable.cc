@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/printable.h"
 
 #include <algorithm>
 

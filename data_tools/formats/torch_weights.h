@@ -18,7 +18,7 @@
 #include <string>
 #include <string_view>
 
-#include "bodyloom/data_tools/formats/weights_file.h"
+#include "data_tools/formats/weights_file.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/weights_file.h"
+#include "data_tools/formats/weights_file.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/element_type.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/formats/torch_weights.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/element_type.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/formats/torch_weights.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

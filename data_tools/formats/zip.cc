@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/zip.h"
+#include "data_tools/formats/zip.h"
 
 #include <zlib.h>
 
@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

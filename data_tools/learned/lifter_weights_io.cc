@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/lifter_weights_io.h"
 
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/learned/weight_arrays.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/learned/weight_arrays.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "geometry/scene/lifter_weights.h"
 
 namespace bodyloom {
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <string>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/render/image/parser_weights.h"
+#include "data_tools/formats/npz.h"
+#include "render/image/parser_weights.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
+#include "data_tools/learned/pose_prior_io.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/formats/npz.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "bodyloom/geometry/scene/pose_prior.h"
+#include "geometry/scene/pose_prior.h"
 
 namespace bodyloom {
 

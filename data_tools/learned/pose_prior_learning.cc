@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/learned/pose_prior_learning.h"
+#include "data_tools/learned/pose_prior_learning.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -10,10 +10,10 @@
 #include <random>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/direction_bins.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/direction_bins.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/pose_prior.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/pose_prior.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

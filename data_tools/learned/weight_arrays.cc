@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/learned/weight_arrays.h"
+#include "data_tools/learned/weight_arrays.h"
 
 #include <cstring>
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

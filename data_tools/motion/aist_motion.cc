@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/aist_motion.h"
+#include "data_tools/motion/aist_motion.h"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/motion/skeleton_motion.h"
-#include "bodyloom/geometry/base/units.h"
+#include "data_tools/motion/skeleton_motion.h"
+#include "geometry/base/units.h"
 
 namespace bodyloom {
 namespace {

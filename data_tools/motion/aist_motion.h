@@ -8,8 +8,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/formats/pickle.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/amass.h"
+#include "data_tools/motion/amass.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_landmarks.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/skeleton_motion.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/body/body_landmarks.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/skeleton_motion.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

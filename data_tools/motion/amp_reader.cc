@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/amp_reader.h"
+#include "data_tools/motion/amp_reader.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/asf_amc_reader.h"
+#include "data_tools/motion/asf_amc_reader.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,10 +8,10 @@
 #include <map>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/motion/text_scanner.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/motion/text_scanner.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/bvh_reader.h"
+#include "data_tools/motion/bvh_reader.h"
 
 #include <cmath>
 
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/motion/text_scanner.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/motion/text_scanner.h"
+#include "geometry/base/units.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/motion/skeleton_motion.h"
+#include "data_tools/motion/skeleton_motion.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/bvh_writer.h"
+#include "data_tools/motion/bvh_writer.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/motion_tools.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

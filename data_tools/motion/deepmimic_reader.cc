@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/deepmimic_reader.h"
+#include "data_tools/motion/deepmimic_reader.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -7,8 +7,8 @@
 /// Source: Peng et al., DeepMimic, data/motions and data/characters/humanoid3d.txt.
 #pragma once
 
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/motion/skeleton_motion.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/motion/skeleton_motion.h"
 
 namespace bodyloom {
 

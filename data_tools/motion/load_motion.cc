@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/load_motion.h"
+#include "data_tools/motion/load_motion.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/data_tools/motion/aist_motion.h"
-#include "bodyloom/data_tools/motion/amass.h"
-#include "bodyloom/data_tools/motion/amp_reader.h"
-#include "bodyloom/data_tools/motion/asf_amc_reader.h"
-#include "bodyloom/data_tools/motion/bvh_reader.h"
-#include "bodyloom/data_tools/motion/deepmimic_reader.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/text_scanner.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/motion/aist_motion.h"
+#include "data_tools/motion/amass.h"
+#include "data_tools/motion/amp_reader.h"
+#include "data_tools/motion/asf_amc_reader.h"
+#include "data_tools/motion/bvh_reader.h"
+#include "data_tools/motion/deepmimic_reader.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/text_scanner.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/motion_cleaning.h"
+#include "data_tools/motion/motion_cleaning.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/smpl_rest.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

@@ -16,7 +16,7 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

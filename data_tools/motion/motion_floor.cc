@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/motion_floor.h"
+#include "data_tools/motion/motion_floor.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
+#include "data_tools/motion/smpl_rest.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
 
 namespace bodyloom {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <span>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/motion_library.h"
+#include "data_tools/motion/motion_library.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <regex>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/motion/motion_floor.h"
-#include "bodyloom/data_tools/motion/motion_split.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/motion_floor.h"
+#include "data_tools/motion/motion_split.h"
+#include "data_tools/motion/motion_tools.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

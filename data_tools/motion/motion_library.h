@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/motion_cleaning.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/motion/motion_cleaning.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

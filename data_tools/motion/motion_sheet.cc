@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/motion_sheet.h"
+#include "data_tools/motion/motion_sheet.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,13 +7,13 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/render/image/image_mat.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/motion/smpl_rest.h"
+#include "geometry/base/check.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/rotation.h"
+#include "render/image/image_mat.h"
+#include "render/image/palette.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

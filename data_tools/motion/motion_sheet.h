@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/scene/track.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/motion_split.h"
+#include "data_tools/motion/motion_split.h"
 
 #include <fnmatch.h>
 
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
 
 // Made by bodyloom_embed() in data_tools/CMakeLists.txt.
 extern "C" {

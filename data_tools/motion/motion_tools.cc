@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "data_tools/motion/motion_tools.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

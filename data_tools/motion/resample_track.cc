@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/resample_track.h"
+#include "data_tools/motion/resample_track.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/motion/motion_tools.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

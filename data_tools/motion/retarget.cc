@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/retarget.h"
+#include "data_tools/motion/retarget.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/motion/skeleton_map.h"
-#include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/motion/skeleton_map.h"
+#include "data_tools/motion/smpl_rest.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -22,8 +22,8 @@
 #include <array>
 #include <string>
 
-#include "bodyloom/data_tools/motion/skeleton_motion.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/motion/skeleton_motion.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

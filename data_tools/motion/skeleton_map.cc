@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/skeleton_map.h"
+#include "data_tools/motion/skeleton_map.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/printable.h"
 
 namespace bodyloom {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/skeleton_motion.h"
+#include "data_tools/motion/skeleton_motion.h"
 
 namespace bodyloom {
 

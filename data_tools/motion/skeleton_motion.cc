@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/skeleton_motion.h"
+#include "data_tools/motion/skeleton_motion.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/smpl_rest.h"
+#include "data_tools/motion/smpl_rest.h"
 
 #include <array>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 

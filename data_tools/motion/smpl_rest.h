@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

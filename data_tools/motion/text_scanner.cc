@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/text_scanner.h"
+#include "data_tools/motion/text_scanner.h"
 
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/inflate.h"
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/inflate.h"
+#include "data_tools/formats/printable.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/track_io.h"
+#include "data_tools/motion/track_io.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -32,8 +32,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

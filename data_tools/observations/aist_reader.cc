@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/aist_reader.h"
+#include "data_tools/observations/aist_reader.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/observations/keypoint_conventions.h"
+#include "geometry/base/units.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

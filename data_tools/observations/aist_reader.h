@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/formats/pickle.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/blazepose_reader.h"
+#include "data_tools/observations/blazepose_reader.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/observations/frame_numbers.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/observations/frame_numbers.h"
 
 namespace bodyloom {
 namespace {

@@ -12,8 +12,8 @@
 /// Source: MediaPipe pose landmarker docs, tfjs-models pose-detection README.
 #pragma once
 
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/observations/people.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/observations/people.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/coco_reader.h"
+#include "data_tools/observations/coco_reader.h"
 
 #include <map>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/frame_numbers.h"
 
 namespace bodyloom {
 namespace {

@@ -9,8 +9,8 @@
 /// Source: cocodataset.org/#format-data, AlphaPose, "Output format".
 #pragma once
 
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/observations/people.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/observations/people.h"
 
 namespace bodyloom {
 

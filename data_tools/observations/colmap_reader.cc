@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/colmap_reader.h"
+#include "data_tools/observations/colmap_reader.h"
 
 #include <Eigen/Geometry>
 #include <array>
@@ -10,9 +10,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
+#include "geometry/scene/camera.h"
 
 namespace bodyloom {
 

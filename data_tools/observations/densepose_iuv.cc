@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/densepose_iuv.h"
+#include "data_tools/observations/densepose_iuv.h"
 
 #include <zlib.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/render/image/image.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 namespace {

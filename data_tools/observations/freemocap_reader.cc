@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/freemocap_reader.h"
+#include "data_tools/observations/freemocap_reader.h"
 
 #include <cmath>
 
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/observations/keypoint_conventions.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/formats/ndarray.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

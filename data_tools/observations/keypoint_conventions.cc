@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
+#include "data_tools/observations/keypoint_conventions.h"
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

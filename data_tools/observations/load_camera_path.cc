@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/load_camera_path.h"
+#include "data_tools/observations/load_camera_path.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,11 +11,11 @@
 #include <set>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/observations/colmap_reader.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/observations/colmap_reader.h"
+#include "data_tools/observations/load_cameras.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 

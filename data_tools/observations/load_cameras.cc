@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/load_cameras.h"
+#include "data_tools/observations/load_cameras.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,13 @@
 
 #include <Eigen/LU>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/observations/pose2sim_toml.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/observations/pose2sim_toml.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

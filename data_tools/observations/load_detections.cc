@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/load_detections.h"
+#include "data_tools/observations/load_detections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,24 +8,24 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/inflate.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/motion/aist_motion.h"
-#include "bodyloom/data_tools/observations/aist_reader.h"
-#include "bodyloom/data_tools/observations/blazepose_reader.h"
-#include "bodyloom/data_tools/observations/coco_reader.h"
-#include "bodyloom/data_tools/observations/freemocap_reader.h"
-#include "bodyloom/data_tools/observations/mmpose_reader.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/data_tools/observations/openpose_reader.h"
-#include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/data_tools/observations/people_npz.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/inflate.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/motion/aist_motion.h"
+#include "data_tools/observations/aist_reader.h"
+#include "data_tools/observations/blazepose_reader.h"
+#include "data_tools/observations/coco_reader.h"
+#include "data_tools/observations/freemocap_reader.h"
+#include "data_tools/observations/mmpose_reader.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/observations/openpose_reader.h"
+#include "data_tools/observations/people.h"
+#include "data_tools/observations/people_npz.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <string>
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

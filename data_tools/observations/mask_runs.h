@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <string>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

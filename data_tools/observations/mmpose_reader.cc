@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/mmpose_reader.h"
+#include "data_tools/observations/mmpose_reader.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/observations/frame_numbers.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/observations/frame_numbers.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/observations/people.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/observations/people.h"
 
 namespace bodyloom {
 

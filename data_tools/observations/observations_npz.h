@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

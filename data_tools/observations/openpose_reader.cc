@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/openpose_reader.h"
+#include "data_tools/observations/openpose_reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/frame_numbers.h"
 
 namespace bodyloom {
 namespace {

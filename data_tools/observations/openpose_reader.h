@@ -10,8 +10,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/observations/people.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/observations/people.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/part_labels.h"
+#include "data_tools/observations/part_labels.h"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/observations/mask_runs.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/observations/mask_runs.h"
+#include "data_tools/observations/observations_npz.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

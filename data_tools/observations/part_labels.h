@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

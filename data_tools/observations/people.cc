@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/people.h"
+#include "data_tools/observations/people.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/observations/keypoint_conventions.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

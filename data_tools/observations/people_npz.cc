@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/people_npz.h"
+#include "data_tools/observations/people_npz.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/observations/observations_npz.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {}  // namespace

@@ -14,8 +14,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/observations/people.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/observations/people.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/pose2sim_toml.h"
+#include "data_tools/observations/pose2sim_toml.h"
 
 #include <algorithm>
 #include <map>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/printable.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/frame_decoder.h"
+#include "data_tools/video/frame_decoder.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -9,8 +9,8 @@ extern "C" {
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/video/image_header.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/video/image_header.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "bodyloom/data_tools/video/libav_handles.h"
-#include "bodyloom/data_tools/video/video_packets.h"
+#include "data_tools/video/libav_handles.h"
+#include "data_tools/video/video_packets.h"
 
 namespace bodyloom {
 

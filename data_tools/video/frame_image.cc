@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/frame_image.h"
+#include "data_tools/video/frame_image.h"
 
 #include <cstdlib>
 
@@ -14,8 +14,8 @@ extern "C" {
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image_mat.h"
+#include "geometry/base/check.h"
+#include "render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {

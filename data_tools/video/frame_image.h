@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "bodyloom/data_tools/video/libav_handles.h"
-#include "bodyloom/render/image/image.h"
+#include "data_tools/video/libav_handles.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/video/image_file.h"
 
 #include <algorithm>
 #include <array>
@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_header.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image_mat.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_header.h"
+#include "geometry/base/check.h"
+#include "render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {

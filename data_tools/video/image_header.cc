@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/image_header.h"
+#include "data_tools/video/image_header.h"
 
 #include <cstddef>
 #include <cstdlib>
 
-#include "bodyloom/data_tools/video/jpeg_header.h"
+#include "data_tools/video/jpeg_header.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/jpeg_header.h"
+#include "data_tools/video/jpeg_header.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/libav_handles.h"
+#include "data_tools/video/libav_handles.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

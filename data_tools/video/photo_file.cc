@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/photo_file.h"
+#include "data_tools/video/photo_file.h"
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/jpeg_header.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/jpeg_header.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/video_encoder.h"
+#include "data_tools/video/video_encoder.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -13,8 +13,8 @@ extern "C" {
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/video/libav_handles.h"
-#include "bodyloom/render/image/image_mat.h"
+#include "data_tools/video/libav_handles.h"
+#include "render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

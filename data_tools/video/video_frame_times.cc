@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/video_frame_times.h"
+#include "data_tools/video/video_frame_times.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -11,9 +11,9 @@ extern "C" {
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/video/frame_decoder.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_packets.h"
+#include "data_tools/video/frame_decoder.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_packets.h"
 
 namespace bodyloom {
 namespace {

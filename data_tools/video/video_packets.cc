@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/video_packets.h"
+#include "data_tools/video/video_packets.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -15,9 +15,9 @@ extern "C" {
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/data_tools/video/image_header.h"
-#include "bodyloom/data_tools/video/libav_handles.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/video/image_header.h"
+#include "data_tools/video/libav_handles.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "bodyloom/data_tools/video/libav_handles.h"
+#include "data_tools/video/libav_handles.h"
 
 struct AVStream;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/video/video_reader.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/video/frame_decoder.h"
-#include "bodyloom/data_tools/video/frame_image.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/jpeg_header.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/video/frame_decoder.h"
+#include "data_tools/video/frame_image.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/jpeg_header.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

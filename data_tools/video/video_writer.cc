@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/video_writer.h"
+#include "data_tools/video/video_writer.h"
 
 #include <filesystem>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_header.h"
-#include "bodyloom/data_tools/video/video_encoder.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_header.h"
+#include "data_tools/video/video_encoder.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "bodyloom/geometry/base/stopwatch.h"
+#include "geometry/base/stopwatch.h"
 
 namespace bodyloom {
 

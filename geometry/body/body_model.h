@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -23,10 +23,10 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/mesh/mesh_adjacency.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/arrays.h"
+#include "geometry/mesh/mesh_adjacency.h"
 
 namespace bodyloom {
 

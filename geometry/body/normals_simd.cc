@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/normals_simd.h"
+#include "geometry/body/normals_simd.h"
 
 #include <cmath>
 #include <limits>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bodyloom/geometry/body/normals_simd.cc"
+#define HWY_TARGET_INCLUDE "geometry/body/normals_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include "bodyloom/geometry/math/quad-inl.h"
+#include "geometry/math/quad-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bodyloom::normals_internal::HWY_NAMESPACE {

@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

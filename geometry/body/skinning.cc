@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/body/skinning.h"
 
 #include <algorithm>
 #include <cstring>
@@ -8,10 +8,10 @@
 #include <numeric>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/skinning_simd.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/skinning_simd.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

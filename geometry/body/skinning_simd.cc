@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/skinning_simd.h"
+#include "geometry/body/skinning_simd.h"
 
 #include <atomic>
 
 // Instruction sets that add nothing to this loop, and those whose vectors have no size at compile time.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bodyloom/geometry/body/skinning_simd.cc"
+#define HWY_TARGET_INCLUDE "geometry/body/skinning_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>

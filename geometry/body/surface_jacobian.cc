@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/surface_jacobian.h"
+#include "geometry/body/surface_jacobian.h"
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 

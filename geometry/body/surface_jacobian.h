@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/body_obstacles.h"
+#include "geometry/cloth/body_obstacles.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/body/skinning.h"
 
 namespace bodyloom {
 namespace {

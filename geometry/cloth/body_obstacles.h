@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_simulation.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/cloth_simulation.h"
 
 namespace bodyloom {
 

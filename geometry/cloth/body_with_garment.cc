@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "geometry/cloth/body_with_garment.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/cloth/body_obstacles.h"
+#include "geometry/base/check.h"
+#include "geometry/body/skinning.h"
+#include "geometry/cloth/body_obstacles.h"
 
 namespace bodyloom {
 namespace {

@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/loose_garment.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/cloth_body.h"
+#include "geometry/cloth/cloth_body.h"
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/normals.h"
+#include "geometry/base/check.h"
+#include "geometry/body/normals.h"
 
 namespace bodyloom {
 namespace {

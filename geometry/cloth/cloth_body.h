@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/cloth/body_obstacles.h"
-#include "bodyloom/geometry/cloth/loose_garment.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/normals.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
+#include "geometry/cloth/body_obstacles.h"
+#include "geometry/cloth/loose_garment.h"
 
 namespace bodyloom {
 

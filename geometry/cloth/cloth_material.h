@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "bodyloom/geometry/cloth/cloth_simulation.h"
-#include "bodyloom/geometry/cloth/loose_garment.h"
+#include "geometry/cloth/cloth_simulation.h"
+#include "geometry/cloth/loose_garment.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/cloth_nodes.h"
+#include "geometry/cloth/cloth_nodes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/procrustes.h"
+#include "geometry/base/check.h"
+#include "geometry/math/procrustes.h"
 
 namespace bodyloom {
 namespace {

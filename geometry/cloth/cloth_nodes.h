@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/cloth/loose_garment.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

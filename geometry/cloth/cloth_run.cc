@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/cloth_run.h"
+#include "geometry/cloth/cloth_run.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/cloth/cloth_simulation.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/base/check.h"
+#include "geometry/cloth/cloth_simulation.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

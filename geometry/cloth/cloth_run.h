@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/cloth/cloth_body.h"
-#include "bodyloom/geometry/cloth/cloth_simulation.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/body/normals.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/cloth/cloth_body.h"
+#include "geometry/cloth/cloth_simulation.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

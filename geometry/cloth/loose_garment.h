@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/cloth/cloth_simulation.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/cloth/cloth_simulation.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/math/direction_bins.h"
+#include "geometry/math/direction_bins.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

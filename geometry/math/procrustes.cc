@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/math/procrustes.h"
+#include "geometry/math/procrustes.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

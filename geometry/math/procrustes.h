@@ -14,7 +14,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

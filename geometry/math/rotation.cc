@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

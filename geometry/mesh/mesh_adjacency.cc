@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/mesh/mesh_adjacency.h"
+#include "geometry/mesh/mesh_adjacency.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

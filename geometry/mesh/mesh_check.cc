@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/mesh/mesh_check.h"
+#include "geometry/mesh/mesh_check.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/mesh/mesh_adjacency.h"
+#include "geometry/base/check.h"
+#include "geometry/mesh/mesh_adjacency.h"
 
 namespace bodyloom {
 namespace {

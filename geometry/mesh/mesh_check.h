@@ -20,7 +20,7 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "geometry/scene/camera_path.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

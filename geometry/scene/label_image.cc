@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/label_image.h"
+#include "geometry/scene/label_image.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/label_image.h"
+#include "geometry/scene/label_image.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/scene/track.h"
 
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

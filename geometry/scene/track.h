@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/world_frame.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/world_frame.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/track_edits.h"
+#include "geometry/scene/track_edits.h"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "geometry/body/normals.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
 
 namespace bodyloom {
 namespace {

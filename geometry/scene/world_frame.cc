@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/world_frame.h"
+#include "geometry/scene/world_frame.h"
 
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

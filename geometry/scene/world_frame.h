@@ -11,7 +11,7 @@
 #include <limits>
 #include <string>
 
-#include "bodyloom/geometry/scene/camera.h"
+#include "geometry/scene/camera.h"
 
 namespace bodyloom {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
+#include "geometry/uv_maps/descriptor_options.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/geometry/uv_maps/velocity_stencil.h"
+#include "geometry/body/normals.h"
+#include "geometry/scene/camera.h"
+#include "geometry/uv_maps/surface_velocity.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "geometry/uv_maps/velocity_stencil.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/uv_maps/surface_maps.h"
+#include "geometry/uv_maps/surface_maps.h"
 
 #include <algorithm>
 #include <cstring>
 #include <utility>
 
-#include "bodyloom/geometry/body/normals_simd.h"
+#include "geometry/body/normals_simd.h"
 
 namespace bodyloom::describe_internal {
 

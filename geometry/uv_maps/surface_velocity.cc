@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
+#include "geometry/uv_maps/surface_velocity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <new>
 #include <numeric>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/skinning_simd.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/skinning_simd.h"
+#include "geometry/math/arrays.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 

@@ -23,12 +23,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/uv_maps/velocity_stencil.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/track.h"
+#include "geometry/uv_maps/velocity_stencil.h"
 
 namespace bodyloom {
 

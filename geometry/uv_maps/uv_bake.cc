@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/uv_maps/uv_bake.h"
+#include "geometry/uv_maps/uv_bake.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/uv_maps/uv_bake_simd.h"
+#include "geometry/base/check.h"
+#include "geometry/uv_maps/uv_bake_simd.h"
 
 namespace bodyloom {
 

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "geometry/math/arrays.h"
+#include "geometry/uv_maps/uv_texels.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/uv_maps/uv_charts.h"
+#include "geometry/uv_maps/uv_charts.h"
 
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/mesh/mesh_adjacency.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
+#include "geometry/mesh/mesh_adjacency.h"
 
 namespace bodyloom {
 

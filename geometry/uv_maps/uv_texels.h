@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/uv_maps/uv_charts.h"
+#include "geometry/body/body_model.h"
+#include "geometry/uv_maps/uv_charts.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/base/device.h"
+#include "neural/base/device.h"
 
 namespace bodyloom {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/base/image_tensor.h"
+#include "neural/base/image_tensor.h"
 
 #include <algorithm>
 #include <cstdlib>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

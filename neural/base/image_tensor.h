@@ -4,7 +4,7 @@
 
 #include <torch/torch.h>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

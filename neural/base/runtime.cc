@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/base/runtime.h"
+#include "neural/base/runtime.h"
 
 #include <ATen/Parallel.h>
 #include <dlfcn.h>
@@ -14,8 +14,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
 
 namespace bodyloom {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/cards/network_cards.h"
+#include "neural/cards/network_cards.h"
 
-#include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/neural/networks/architecture_card.h"
-#include "bodyloom/neural/networks/patch_discriminator.h"
-#include "bodyloom/neural/photo/photo_model.h"
+#include "neural/guided/guided_model.h"
+#include "neural/motion/motion_model.h"
+#include "neural/networks/architecture_card.h"
+#include "neural/networks/patch_discriminator.h"
+#include "neural/photo/photo_model.h"
 
 namespace bodyloom {
 

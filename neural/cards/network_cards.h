@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/motion/motion_config.h"
-#include "bodyloom/neural/photo/photo_config.h"
+#include "neural/guided/guided_config.h"
+#include "neural/motion/motion_config.h"
+#include "neural/photo/photo_config.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/densepose/densepose_network.h"
+#include "neural/densepose/densepose_network.h"
 
 #include <torch/script.h>
 
@@ -9,11 +9,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/densepose/densepose_output.h"
-#include "bodyloom/neural/densepose/paste_charts.h"
-#include "bodyloom/neural/densepose/vision_operators.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
+#include "neural/densepose/densepose_output.h"
+#include "neural/densepose/paste_charts.h"
+#include "neural/densepose/vision_operators.h"
 
 namespace bodyloom {
 namespace {

@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/label_image.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/scene/label_image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

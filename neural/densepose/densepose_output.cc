@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/densepose/densepose_output.h"
+#include "neural/densepose/densepose_output.h"
 
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/densepose/paste_charts.h"
+#include "geometry/base/check.h"
+#include "neural/densepose/paste_charts.h"
 
 namespace bodyloom {
 namespace {

@@ -10,7 +10,7 @@
 /// (detectron2, projects/DensePose, converters/to_chart_result.py).
 #pragma once
 
-#include "bodyloom/geometry/scene/label_image.h"
+#include "geometry/scene/label_image.h"
 
 namespace bodyloom {
 

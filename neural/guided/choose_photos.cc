@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/choose_photos.h"
+#include "neural/guided/choose_photos.h"
 
 #include <algorithm>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
+#include "neural/guided/coherent_maps.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bodyloom/render/texture/photo_frame.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/coherent_maps.h"
+#include "neural/guided/coherent_maps.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/garment/clothes_extent.h"
+#include "geometry/base/check.h"
+#include "render/garment/clothes_extent.h"
 
 namespace bodyloom {
 namespace {

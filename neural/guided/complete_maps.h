@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
+#include "neural/guided/coherent_maps.h"
 
 namespace bodyloom {
 

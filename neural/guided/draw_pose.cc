@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/draw_pose.h"
+#include "neural/guided/draw_pose.h"
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/guided/guided_tensors.h"
+#include "geometry/base/check.h"
+#include "neural/guided/guided_tensors.h"
 
 namespace bodyloom {
 

@@ -2,9 +2,9 @@
 /// Renders one pose through the three networks. Internal: includes LibTorch.
 #pragma once
 
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/guided/coherent_maps.h"
+#include "neural/guided/guided_model.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/guided_batches.h"
+#include "neural/guided/guided_batches.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/guided/guided_tensors.h"
-#include "bodyloom/neural/guided/source_maps.h"
-#include "bodyloom/neural/training/photo_partner.h"
+#include "geometry/base/check.h"
+#include "neural/guided/guided_tensors.h"
+#include "neural/guided/source_maps.h"
+#include "neural/training/photo_partner.h"
 
 namespace bodyloom {
 

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/render/texture/complete/texel_neighbours.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "geometry/base/prefetcher.h"
+#include "neural/guided/guided_config.h"
+#include "neural/guided/guided_model.h"
+#include "render/texture/complete/texel_neighbours.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

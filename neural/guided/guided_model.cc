@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/guided_model.h"
+#include "neural/guided/guided_model.h"
 
-#include "bodyloom/neural/losses/image_losses.h"
-#include "bodyloom/neural/networks/uv_sampler.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/losses/image_losses.h"
+#include "neural/networks/uv_sampler.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -17,9 +17,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/guided_networks.h"
-#include "bodyloom/neural/networks/patch_discriminator.h"
+#include "neural/guided/guided_config.h"
+#include "neural/guided/guided_networks.h"
+#include "neural/networks/patch_discriminator.h"
 
 namespace bodyloom {
 

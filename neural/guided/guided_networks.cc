@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/guided_networks.h"
+#include "neural/guided/guided_networks.h"
 
 #include <algorithm>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "geometry/base/check.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -10,9 +10,9 @@
 #include <torch/torch.h>
 #include <vector>
 
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/networks/blocks.h"
-#include "bodyloom/neural/networks/spatial_modulation.h"
+#include "neural/guided/guided_config.h"
+#include "neural/networks/blocks.h"
+#include "neural/networks/spatial_modulation.h"
 
 namespace bodyloom {
 

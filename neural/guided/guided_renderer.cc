@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/guided_renderer.h"
+#include "neural/guided/guided_renderer.h"
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/guided/draw_pose.h"
-#include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/neural/guided/guided_tensors.h"
-#include "bodyloom/neural/training/checkpoint.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
+#include "neural/base/runtime.h"
+#include "neural/guided/draw_pose.h"
+#include "neural/guided/guided_model.h"
+#include "neural/guided/guided_tensors.h"
+#include "neural/training/checkpoint.h"
 
 namespace bodyloom {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/source_maps.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/guided/coherent_maps.h"
+#include "neural/guided/guided_config.h"
+#include "neural/guided/source_maps.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

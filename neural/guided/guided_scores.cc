@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/guided_scores.h"
+#include "neural/guided/guided_scores.h"
 
 #include <cmath>
 #include <limits>
@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/metrics/contextual_similarity.h"
-#include "bodyloom/neural/metrics/lpips.h"
-#include "bodyloom/neural/metrics/pixel_metrics.h"
+#include "geometry/base/check.h"
+#include "neural/metrics/contextual_similarity.h"
+#include "neural/metrics/lpips.h"
+#include "neural/metrics/pixel_metrics.h"
 
 namespace bodyloom {
 namespace {

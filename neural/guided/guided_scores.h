@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/guided/coherent_maps.h"
+#include "neural/networks/named_weights.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

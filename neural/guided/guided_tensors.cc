@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/guided_tensors.h"
+#include "neural/guided/guided_tensors.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/networks/aligned_box.h"
-#include "bodyloom/render/texture/complete/body_part_map.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
+#include "neural/networks/aligned_box.h"
+#include "render/texture/complete/body_part_map.h"
 
 namespace bodyloom {
 namespace {

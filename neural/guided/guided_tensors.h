@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/neural/guided/guided_networks.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/guided/coherent_maps.h"
+#include "neural/guided/guided_model.h"
+#include "neural/guided/guided_networks.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

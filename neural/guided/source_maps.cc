@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/source_maps.h"
+#include "neural/guided/source_maps.h"
 
 #include <optional>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/garment/clothes_extent.h"
-#include "bodyloom/render/texture/complete/guess_unseen.h"
+#include "geometry/base/check.h"
+#include "render/garment/clothes_extent.h"
+#include "render/texture/complete/guess_unseen.h"
 
 namespace bodyloom {
 namespace {

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/guided/complete_maps.h"
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/render/texture/complete/texel_neighbours.h"
+#include "neural/guided/coherent_maps.h"
+#include "neural/guided/complete_maps.h"
+#include "neural/guided/guided_config.h"
+#include "render/texture/complete/texel_neighbours.h"
 
 namespace bodyloom {
 

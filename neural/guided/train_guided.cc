@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/train_guided.h"
+#include "neural/guided/train_guided.h"
 
 #include <algorithm>
 #include <array>
@@ -8,22 +8,22 @@
 #include <optional>
 #include <span>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/guided/choose_photos.h"
-#include "bodyloom/neural/guided/draw_pose.h"
-#include "bodyloom/neural/guided/guided_batches.h"
-#include "bodyloom/neural/guided/guided_tensors.h"
-#include "bodyloom/neural/guided/loss_balance.h"
-#include "bodyloom/neural/guided/source_maps.h"
-#include "bodyloom/neural/losses/contextual_loss.h"
-#include "bodyloom/neural/losses/gan_losses.h"
-#include "bodyloom/neural/losses/image_losses.h"
-#include "bodyloom/neural/networks/vgg.h"
-#include "bodyloom/neural/training/optimizers.h"
-#include "bodyloom/neural/training/training_loop.h"
+#include "geometry/base/check.h"
+#include "geometry/base/prefetcher.h"
+#include "neural/base/device.h"
+#include "neural/base/runtime.h"
+#include "neural/guided/choose_photos.h"
+#include "neural/guided/draw_pose.h"
+#include "neural/guided/guided_batches.h"
+#include "neural/guided/guided_tensors.h"
+#include "neural/guided/loss_balance.h"
+#include "neural/guided/source_maps.h"
+#include "neural/losses/contextual_loss.h"
+#include "neural/losses/gan_losses.h"
+#include "neural/losses/image_losses.h"
+#include "neural/networks/vgg.h"
+#include "neural/training/optimizers.h"
+#include "neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {

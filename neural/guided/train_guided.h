@@ -20,12 +20,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/guided_scores.h"
-#include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/guided/coherent_maps.h"
+#include "neural/guided/guided_config.h"
+#include "neural/guided/guided_scores.h"
+#include "neural/networks/named_weights.h"
+#include "neural/training/training_run.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/lifter/lifter_loss.h"
+#include "neural/lifter/lifter_loss.h"
 
 #include <vector>
 
-#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "geometry/scene/lifter_weights.h"
 
 namespace bodyloom {
 namespace {

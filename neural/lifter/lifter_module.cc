@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/lifter/lifter_module.h"
+#include "neural/lifter/lifter_module.h"
 
 #include <cstring>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

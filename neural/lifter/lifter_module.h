@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "geometry/scene/lifter_weights.h"
 
 namespace bodyloom {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/lifter/train_lifter.h"
+#include "neural/lifter/train_lifter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/lifter/lifter_loss.h"
-#include "bodyloom/neural/lifter/lifter_module.h"
-#include "bodyloom/neural/training/optimizers.h"
-#include "bodyloom/neural/training/training_loop.h"
+#include "geometry/base/check.h"
+#include "geometry/base/prefetcher.h"
+#include "neural/base/runtime.h"
+#include "neural/lifter/lifter_loss.h"
+#include "neural/lifter/lifter_module.h"
+#include "neural/training/optimizers.h"
+#include "neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {

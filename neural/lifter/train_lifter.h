@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/lifter_weights.h"
-#include "bodyloom/neural/training/training_run.h"
+#include "geometry/scene/lifter_weights.h"
+#include "neural/training/training_run.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/losses/gan_losses.h"
+#include "neural/losses/gan_losses.h"
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

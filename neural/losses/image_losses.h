@@ -10,7 +10,7 @@
 #include <torch/torch.h>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

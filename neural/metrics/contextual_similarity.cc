@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/metrics/contextual_similarity.h"
+#include "neural/metrics/contextual_similarity.h"
 
 #include <torch/torch.h>
 
 #include <cmath>
 
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/losses/contextual_loss.h"
-#include "bodyloom/neural/networks/vgg.h"
+#include "neural/base/image_tensor.h"
+#include "neural/losses/contextual_loss.h"
+#include "neural/networks/vgg.h"
 
 namespace bodyloom {
 

@@ -13,8 +13,8 @@
 #include <memory>
 #include <string>
 
-#include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/render/image/image.h"
+#include "neural/networks/named_weights.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/metrics/lpips.h"
+#include "neural/metrics/lpips.h"
 
 #include <torch/torch.h>
 
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/networks/load_weights.h"
-#include "bodyloom/neural/networks/vgg.h"
+#include "geometry/base/check.h"
+#include "neural/base/image_tensor.h"
+#include "neural/networks/load_weights.h"
+#include "neural/networks/vgg.h"
 
 namespace bodyloom {
 namespace {

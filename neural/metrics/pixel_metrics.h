@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/base/check.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/metrics/temporal_lpips.h"
+#include "neural/metrics/temporal_lpips.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/neural/base/image_tensor.h"
+#include "neural/base/image_tensor.h"
 
 namespace bodyloom {
 

@@ -11,7 +11,7 @@
 
 #include <optional>
 
-#include "bodyloom/neural/metrics/lpips.h"
+#include "neural/metrics/lpips.h"
 
 namespace bodyloom {
 

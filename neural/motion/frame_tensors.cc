@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/frame_tensors.h"
+#include "neural/motion/frame_tensors.h"
 
 #include <algorithm>
 #include <functional>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
 
 namespace bodyloom {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/motion_model.h"
+#include "neural/motion/motion_frame.h"
+#include "neural/motion/motion_model.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/motion_batches.h"
+#include "neural/motion/motion_batches.h"
 
 #include <span>
 #include <utility>

@@ -6,10 +6,10 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/person_box.h"
-#include "bodyloom/neural/motion/rollout_plan.h"
+#include "geometry/base/prefetcher.h"
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/person_box.h"
+#include "neural/motion/rollout_plan.h"
 
 namespace bodyloom {
 

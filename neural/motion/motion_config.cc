@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/motion_config.h"
+#include "neural/motion/motion_config.h"
 
 #include <sstream>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

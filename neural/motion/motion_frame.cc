@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/motion_frame.h"
+#include "neural/motion/motion_frame.h"
 
 #include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "bodyloom/render/garment/clothes_extent.h"
+#include "render/garment/clothes_extent.h"
 
 namespace bodyloom {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/motion_model.h"
+#include "neural/motion/motion_model.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/networks/uv_sampler.h"
+#include "geometry/base/check.h"
+#include "neural/networks/uv_sampler.h"
 
 namespace bodyloom {
 namespace {

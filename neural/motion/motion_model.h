@@ -20,8 +20,8 @@
 #include <torch/torch.h>
 #include <vector>
 
-#include "bodyloom/neural/motion/motion_config.h"
-#include "bodyloom/neural/networks/unet.h"
+#include "neural/motion/motion_config.h"
+#include "neural/networks/unet.h"
 
 namespace bodyloom {
 

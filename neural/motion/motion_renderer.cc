@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/motion_renderer.h"
+#include "neural/motion/motion_renderer.h"
 
 #include <span>
 
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/motion_scorer.h"
-#include "bodyloom/neural/motion/roll_out.h"
-#include "bodyloom/neural/training/checkpoint.h"
+#include "neural/base/device.h"
+#include "neural/base/runtime.h"
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_scorer.h"
+#include "neural/motion/roll_out.h"
+#include "neural/training/checkpoint.h"
 
 namespace bodyloom {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/metrics/lpips.h"
-#include "bodyloom/neural/metrics/pixel_metrics.h"
-#include "bodyloom/neural/motion/motion_config.h"
-#include "bodyloom/neural/motion/motion_frame.h"
+#include "neural/metrics/lpips.h"
+#include "neural/metrics/pixel_metrics.h"
+#include "neural/motion/motion_config.h"
+#include "neural/motion/motion_frame.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/motion_scorer.h"
+#include "neural/motion/motion_scorer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/image_tensor.h"
+#include "neural/base/device.h"
+#include "neural/base/image_tensor.h"
 
 namespace bodyloom {
 

@@ -7,11 +7,11 @@
 #include <memory>
 #include <optional>
 
-#include "bodyloom/neural/metrics/pixel_metrics.h"
-#include "bodyloom/neural/metrics/temporal_lpips.h"
-#include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/motion_model.h"
+#include "neural/metrics/pixel_metrics.h"
+#include "neural/metrics/temporal_lpips.h"
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_frame.h"
+#include "neural/motion/motion_model.h"
 
 namespace bodyloom {
 

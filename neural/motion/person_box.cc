@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/person_box.h"
+#include "neural/motion/person_box.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/networks/aligned_box.h"
+#include "geometry/base/check.h"
+#include "neural/networks/aligned_box.h"
 
 namespace bodyloom {
 

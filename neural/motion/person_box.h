@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/render/image/pixel_box.h"
+#include "neural/motion/motion_frame.h"
+#include "neural/motion/motion_model.h"
+#include "render/image/pixel_box.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/roll_out.h"
+#include "neural/motion/roll_out.h"
 
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/motion/person_box.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
+#include "neural/base/image_tensor.h"
+#include "neural/motion/person_box.h"
 
 namespace bodyloom {
 

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/motion_batches.h"
-#include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/neural/training/checkpoint.h"
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_batches.h"
+#include "neural/motion/motion_model.h"
+#include "neural/training/checkpoint.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/rollout_plan.h"
+#include "neural/motion/rollout_plan.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/train_motion.h"
+#include "neural/motion/train_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <span>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/losses/gan_losses.h"
-#include "bodyloom/neural/losses/image_losses.h"
-#include "bodyloom/neural/motion/motion_batches.h"
-#include "bodyloom/neural/motion/motion_scorer.h"
-#include "bodyloom/neural/motion/roll_out.h"
-#include "bodyloom/neural/networks/patch_discriminator.h"
-#include "bodyloom/neural/networks/vgg.h"
-#include "bodyloom/neural/training/optimizers.h"
-#include "bodyloom/neural/training/training_loop.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
+#include "neural/base/runtime.h"
+#include "neural/losses/gan_losses.h"
+#include "neural/losses/image_losses.h"
+#include "neural/motion/motion_batches.h"
+#include "neural/motion/motion_scorer.h"
+#include "neural/motion/roll_out.h"
+#include "neural/networks/patch_discriminator.h"
+#include "neural/networks/vgg.h"
+#include "neural/training/optimizers.h"
+#include "neural/training/training_loop.h"
 
 namespace bodyloom {
 namespace {

@@ -17,12 +17,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/metrics/pixel_metrics.h"
-#include "bodyloom/neural/motion/motion_config.h"
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/rollout_plan.h"
-#include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/neural/training/training_run.h"
+#include "neural/metrics/pixel_metrics.h"
+#include "neural/motion/motion_config.h"
+#include "neural/motion/motion_frame.h"
+#include "neural/motion/rollout_plan.h"
+#include "neural/networks/named_weights.h"
+#include "neural/training/training_run.h"
 
 namespace bodyloom {
 

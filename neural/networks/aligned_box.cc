@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/networks/aligned_box.h"
+#include "neural/networks/aligned_box.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bodyloom/render/image/pixel_box.h"
+#include "render/image/pixel_box.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/networks/blocks.h"
+#include "neural/networks/blocks.h"
 
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/networks/named_weights.h"
+#include "neural/networks/named_weights.h"
 
 namespace bodyloom {
 

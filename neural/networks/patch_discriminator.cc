@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/networks/patch_discriminator.h"
+#include "neural/networks/patch_discriminator.h"
 
 #include <algorithm>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/networks/blocks.h"
+#include "geometry/base/check.h"
+#include "neural/networks/blocks.h"
 
 namespace bodyloom {
 

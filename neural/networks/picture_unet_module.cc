@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/networks/picture_unet_module.h"
+#include "neural/networks/picture_unet_module.h"
 
 #include <cmath>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "bodyloom/render/image/parser_weights.h"
+#include "render/image/parser_weights.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/networks/spatial_modulation.h"
+#include "neural/networks/spatial_modulation.h"
 
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/networks/blocks.h"
+#include "geometry/base/check.h"
+#include "neural/networks/blocks.h"
 
 namespace bodyloom {
 

@@ -13,7 +13,7 @@
 
 #include <vector>
 
-#include "bodyloom/neural/networks/blocks.h"
+#include "neural/networks/blocks.h"
 
 namespace bodyloom {
 

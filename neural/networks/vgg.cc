@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/networks/vgg.h"
+#include "neural/networks/vgg.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
 
 namespace bodyloom {
 

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/networks/load_weights.h"
+#include "neural/networks/load_weights.h"
 
 namespace bodyloom {
 

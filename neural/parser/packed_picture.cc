@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/parser/packed_picture.h"
+#include "neural/parser/packed_picture.h"
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/parser_weights.h"
+#include "geometry/base/check.h"
+#include "render/image/parser_weights.h"
 
 namespace bodyloom {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/render/image/person_layers.h"
+#include "neural/training/training_run.h"
+#include "render/image/person_layers.h"
 
 namespace bodyloom {
 

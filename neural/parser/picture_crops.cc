@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/parser/picture_crops.h"
+#include "neural/parser/picture_crops.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/render/image/parser_weights.h"
-#include "bodyloom/neural/base/device.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "neural/base/device.h"
+#include "render/image/parser_weights.h"
 
 namespace bodyloom {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/parser/packed_picture.h"
+#include "neural/parser/packed_picture.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/parser/picture_trainer.h"
+#include "neural/parser/picture_trainer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/neural/training/optimizers.h"
+#include "neural/training/optimizers.h"
 
 namespace bodyloom {
 namespace {

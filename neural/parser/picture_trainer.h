@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/parser/packed_picture.h"
-#include "bodyloom/neural/parser/picture_crops.h"
-#include "bodyloom/neural/training/checkpoint.h"
-#include "bodyloom/neural/training/training_loop.h"
+#include "geometry/base/prefetcher.h"
+#include "neural/parser/packed_picture.h"
+#include "neural/parser/picture_crops.h"
+#include "neural/training/checkpoint.h"
+#include "neural/training/training_loop.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/parser/train_parser.h"
+#include "neural/parser/train_parser.h"
 
 #include <cstdint>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/metrics/pixel_metrics.h"
-#include "bodyloom/neural/networks/picture_unet_module.h"
-#include "bodyloom/neural/parser/picture_crops.h"
-#include "bodyloom/neural/parser/picture_trainer.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
+#include "neural/base/runtime.h"
+#include "neural/metrics/pixel_metrics.h"
+#include "neural/networks/picture_unet_module.h"
+#include "neural/parser/picture_crops.h"
+#include "neural/parser/picture_trainer.h"
 
 namespace bodyloom {
 namespace {

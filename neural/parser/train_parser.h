@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/render/image/parser_weights.h"
-#include "bodyloom/neural/parser/packed_picture.h"
-#include "bodyloom/neural/training/training_run.h"
+#include "neural/parser/packed_picture.h"
+#include "neural/training/training_run.h"
+#include "render/image/parser_weights.h"
 
 namespace bodyloom {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/photo_batch.h"
+#include "neural/photo/photo_batch.h"
 
 #include <algorithm>
 
-#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
 namespace {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/photo/photo_pairs.h"
-#include "bodyloom/neural/photo/photo_tensors.h"
-#include "bodyloom/render/texture/complete/texel_neighbours.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/photo/photo_pairs.h"
+#include "neural/photo/photo_tensors.h"
+#include "render/texture/complete/texel_neighbours.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 
@@ -20,8 +20,8 @@ struct PhotoBatch {
 };
 
 /// Windows: neural/photo/photo_window.h, the largest one's sides for all. `guess`: what the source's texture is filled
-/// with where nothing is seen; null: with nothing. `back_of_head` (render/texture/complete/body_part_map.h): for the faces; empty:
-/// nobody looks at them.
+/// with where nothing is seen; null: with nothing. `back_of_head` (render/texture/complete/body_part_map.h): for the
+/// faces; empty: nobody looks at them.
 PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side,
                           const TexelNeighbours* guess = nullptr, std::span<const uint8_t> back_of_head = {});
 

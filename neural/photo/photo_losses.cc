@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/photo_losses.h"
+#include "neural/photo/photo_losses.h"
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/losses/image_losses.h"
+#include "geometry/base/check.h"
+#include "neural/losses/image_losses.h"
 
 namespace bodyloom {
 

@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "bodyloom/neural/networks/sphereface.h"
-#include "bodyloom/neural/photo/photo_tensors.h"
+#include "neural/networks/sphereface.h"
+#include "neural/photo/photo_tensors.h"
 
 namespace bodyloom {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/photo_model.h"
+#include "neural/photo/photo_model.h"
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/networks/uv_sampler.h"
+#include "geometry/base/check.h"
+#include "neural/networks/uv_sampler.h"
 
 namespace bodyloom {
 

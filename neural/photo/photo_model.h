@@ -22,10 +22,10 @@
 
 #include <torch/torch.h>
 
-#include "bodyloom/neural/networks/patch_discriminator.h"
-#include "bodyloom/neural/networks/residual_generator.h"
-#include "bodyloom/neural/photo/photo_config.h"
-#include "bodyloom/neural/photo/photo_tensors.h"
+#include "neural/networks/patch_discriminator.h"
+#include "neural/networks/residual_generator.h"
+#include "neural/photo/photo_config.h"
+#include "neural/photo/photo_tensors.h"
 
 namespace bodyloom {
 

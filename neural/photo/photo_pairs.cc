@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/photo_pairs.h"
+#include "neural/photo/photo_pairs.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/neural/training/photo_partner.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "neural/training/photo_partner.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/render/texture/photo_frame.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

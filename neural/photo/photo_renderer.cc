@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/photo_renderer.h"
+#include "neural/photo/photo_renderer.h"
 
 #include <span>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/photo/render_photo.h"
-#include "bodyloom/neural/training/checkpoint.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
+#include "neural/base/runtime.h"
+#include "neural/photo/render_photo.h"
+#include "neural/training/checkpoint.h"
 
 namespace bodyloom {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/photo/photo_config.h"
-#include "bodyloom/neural/photo/photo_picture.h"
-#include "bodyloom/render/texture/complete/partial_texture.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/photo/photo_config.h"
+#include "neural/photo/photo_picture.h"
+#include "render/texture/complete/partial_texture.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

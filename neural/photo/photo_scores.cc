@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/photo_scores.h"
+#include "neural/photo/photo_scores.h"
 
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/image_tensor.h"
+#include "geometry/base/check.h"
+#include "neural/base/image_tensor.h"
 
 namespace bodyloom {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "bodyloom/neural/metrics/lpips.h"
-#include "bodyloom/neural/metrics/pixel_metrics.h"
-#include "bodyloom/neural/photo/photo_picture.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/metrics/lpips.h"
+#include "neural/metrics/pixel_metrics.h"
+#include "neural/photo/photo_picture.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/photo_tensors.h"
+#include "neural/photo/photo_tensors.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/device.h"
+#include "geometry/base/check.h"
+#include "neural/base/device.h"
 
 namespace bodyloom {
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/photo/photo_window.h"
-#include "bodyloom/render/texture/complete/partial_texture.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/photo/photo_window.h"
+#include "render/texture/complete/partial_texture.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

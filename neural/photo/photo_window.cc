@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/photo_window.h"
+#include "neural/photo/photo_window.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/motion/motion_frame.h"
+#include "geometry/base/check.h"
+#include "neural/motion/motion_frame.h"
 
 namespace bodyloom {
 namespace {

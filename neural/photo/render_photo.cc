@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/render_photo.h"
+#include "neural/photo/render_photo.h"
 
 #include <algorithm>
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/base/device.h"
+#include "neural/base/device.h"
 
 namespace bodyloom {
 

@@ -2,8 +2,8 @@
 /// Renders one pose from the features of a source. Internal: includes LibTorch.
 #pragma once
 
-#include "bodyloom/neural/photo/photo_model.h"
-#include "bodyloom/neural/photo/photo_picture.h"
+#include "neural/photo/photo_model.h"
+#include "neural/photo/photo_picture.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/photo/train_photo.h"
+#include "neural/photo/train_photo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,21 +8,21 @@
 #include <optional>
 #include <span>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/losses/gan_losses.h"
-#include "bodyloom/neural/losses/image_losses.h"
-#include "bodyloom/neural/networks/vgg.h"
-#include "bodyloom/neural/photo/photo_batch.h"
-#include "bodyloom/neural/photo/photo_losses.h"
-#include "bodyloom/neural/photo/photo_model.h"
-#include "bodyloom/neural/photo/render_photo.h"
-#include "bodyloom/neural/training/optimizers.h"
-#include "bodyloom/neural/training/training_loop.h"
-#include "bodyloom/render/texture/complete/body_part_map.h"
-#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "geometry/base/check.h"
+#include "geometry/base/prefetcher.h"
+#include "neural/base/device.h"
+#include "neural/base/runtime.h"
+#include "neural/losses/gan_losses.h"
+#include "neural/losses/image_losses.h"
+#include "neural/networks/vgg.h"
+#include "neural/photo/photo_batch.h"
+#include "neural/photo/photo_losses.h"
+#include "neural/photo/photo_model.h"
+#include "neural/photo/render_photo.h"
+#include "neural/training/optimizers.h"
+#include "neural/training/training_loop.h"
+#include "render/texture/complete/body_part_map.h"
+#include "render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
 namespace {

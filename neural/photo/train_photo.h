@@ -21,13 +21,13 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/networks/named_weights.h"
-#include "bodyloom/neural/photo/photo_config.h"
-#include "bodyloom/neural/photo/photo_pairs.h"
-#include "bodyloom/neural/photo/photo_picture.h"
-#include "bodyloom/neural/photo/photo_scores.h"
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/networks/named_weights.h"
+#include "neural/photo/photo_config.h"
+#include "neural/photo/photo_pairs.h"
+#include "neural/photo/photo_picture.h"
+#include "neural/photo/photo_scores.h"
+#include "neural/training/training_run.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/training/checkpoint.h"
+#include "neural/training/checkpoint.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/training/checkpoint_file.h"
+#include "geometry/base/check.h"
+#include "neural/training/checkpoint_file.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/training/checkpoint_file.h"
+#include "neural/training/checkpoint_file.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/training/run_files.h"
+#include "geometry/base/check.h"
+#include "neural/training/run_files.h"
 
 namespace bodyloom {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/training/photo_partner.h"
+#include "neural/training/photo_partner.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

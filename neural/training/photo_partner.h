@@ -2,7 +2,7 @@
 /// Which picture of a person another one is to be turned into: the pairs that the one-photo renderers learn from.
 #pragma once
 
-#include "bodyloom/render/texture/photo_frame.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

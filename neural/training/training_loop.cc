@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/training/training_loop.h"
+#include "neural/training/training_loop.h"
 
 #include <filesystem>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/neural/training/run_files.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "neural/training/run_files.h"
 
 namespace bodyloom {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/training/checkpoint.h"
-#include "bodyloom/neural/training/training_run.h"
+#include "neural/training/checkpoint.h"
+#include "neural/training/training_run.h"
 
 namespace bodyloom {
 

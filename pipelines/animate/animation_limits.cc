@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/animate/animation_limits.h"
+#include "pipelines/animate/animation_limits.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/animate/background.h"
+#include "pipelines/animate/background.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/video/image_file.h"
 
 namespace bodyloom {
 

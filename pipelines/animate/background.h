@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/view/person_window.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/scene/camera.h"
+#include "neural/motion/motion_frame.h"
+#include "render/image/image.h"
+#include "render/view/person_window.h"
 
 namespace bodyloom {
 

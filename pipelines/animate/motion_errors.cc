@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/animate/motion_errors.h"
+#include "pipelines/animate/motion_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <sstream>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "data_tools/formats/atomic_file.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/neural/motion/motion_frame.h"
+#include "neural/motion/motion_frame.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/animate/person_segmentation.h"
+#include "pipelines/animate/person_segmentation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "bodyloom/data_tools/datasets/photo_segmentation.h"
-#include "bodyloom/data_tools/evaluation/image_metrics.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/datasets/photo_segmentation.h"
+#include "data_tools/evaluation/image_metrics.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/render/image/image.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/video/photo_file.h"
+#include "data_tools/video/photo_file.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/animate/relight_frames.h"
+#include "pipelines/animate/relight_frames.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

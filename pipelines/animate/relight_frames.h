@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/render/lighting/fit_lighting.h"
-#include "bodyloom/render/lighting/sh_lighting.h"
+#include "neural/motion/motion_frame.h"
+#include "render/lighting/fit_lighting.h"
+#include "render/lighting/sh_lighting.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/batch/batch_clip.h"
+#include "pipelines/batch/batch_clip.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/data_tools/formats/sha256.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/pipelines/track/track_clip.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/formats/printable.h"
+#include "data_tools/formats/sha256.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/report_text.h"
+#include "pipelines/track/track_clip.h"
 
 namespace bodyloom {
 namespace {

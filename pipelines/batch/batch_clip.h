@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/batch/manifest.h"
-#include "bodyloom/pipelines/track/track_people_clip.h"
-#include "bodyloom/pipelines/track/track_request.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/batch/manifest.h"
+#include "pipelines/track/track_people_clip.h"
+#include "pipelines/track/track_request.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/batch/manifest.h"
+#include "pipelines/batch/manifest.h"
 
 #include <algorithm>
 #include <array>
@@ -10,10 +10,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

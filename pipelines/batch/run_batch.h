@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/batch/batch_clip.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/batch/batch_clip.h"
 
 namespace bodyloom {
 

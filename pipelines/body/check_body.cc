@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/body/check_body.h"
+#include "pipelines/body/check_body.h"
 
 #include <algorithm>
 #include <map>
@@ -7,16 +7,16 @@
 #include <numeric>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/render/render_track.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/scene/track.h"
+#include "pipelines/files.h"
+#include "pipelines/render/render_track.h"
+#include "pipelines/report_text.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body/repair_body.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/mesh/mesh_check.h"
+#include "data_tools/body/repair_body.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/mesh/mesh_check.h"
 
 namespace bodyloom {
 

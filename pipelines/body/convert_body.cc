@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/body/convert_body.h"
+#include "pipelines/body/convert_body.h"
 
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/pipelines/files.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "pipelines/files.h"
 
 namespace bodyloom {
 

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body_making/make_builtin_body.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/body_making/make_builtin_body.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 

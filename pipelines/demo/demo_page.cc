@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/demo/demo_page.h"
+#include "pipelines/demo/demo_page.h"
 
 #include <algorithm>
 
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/page/report_page.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
+#include "pipelines/page/report_page.h"
+#include "pipelines/report_text.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

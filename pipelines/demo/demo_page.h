@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/track/track_report.h"
-#include "bodyloom/render/image/image.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/scene/track.h"
+#include "pipelines/track/track_report.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/demo/run_demo.h"
+#include "pipelines/demo/run_demo.h"
 
 #include <filesystem>
 #include <sstream>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/demo/demo_page.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
-#include "bodyloom/pipelines/track/track_clip.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/truth_evaluation.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "pipelines/demo/demo_page.h"
+#include "pipelines/files.h"
+#include "pipelines/synthesis/synthesize_clip.h"
+#include "pipelines/track/track_clip.h"
 
 namespace bodyloom {
 namespace {

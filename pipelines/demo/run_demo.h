@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/track/track_report.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/track/track_report.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/describe/describe_clip.h"
+#include "pipelines/describe/describe_clip.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -8,17 +8,17 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/report_json.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/scene/track.h"
+#include "pipelines/files.h"
+#include "pipelines/report_json.h"
 
 namespace bodyloom {
 namespace {

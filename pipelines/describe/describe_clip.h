@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <string>
 
-#include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
+#include "data_tools/descriptors/describe_track.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/uv_maps/descriptor_options.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/detect/cut_masks.h"
+#include "pipelines/detect/cut_masks.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/detection/background_cut.h"
-#include "bodyloom/tracking/detection/still_background.h"
+#include "data_tools/observations/people.h"
+#include "geometry/base/parallel.h"
+#include "tracking/detection/background_cut.h"
+#include "tracking/detection/still_background.h"
 
 namespace bodyloom {
 namespace {

@@ -3,8 +3,8 @@
 /// (tracking/detection/background_cut.h).
 #pragma once
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/detect/detect_people.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/detect/detect_people.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/detect/detect_clip.h"
+#include "pipelines/detect/detect_clip.h"
 
 #include <algorithm>
 #include <memory>
@@ -7,18 +7,18 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/observations/people_npz.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/pipelines/detect/cut_masks.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/report_text.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/observations/people_npz.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/detect/cut_masks.h"
+#include "pipelines/files.h"
+#include "pipelines/report_json.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/detect/detect_dense.h"
-#include "bodyloom/pipelines/detect/detect_people.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/stopwatch.h"
+#include "pipelines/detect/detect_dense.h"
+#include "pipelines/detect/detect_people.h"
 
 namespace bodyloom {
 

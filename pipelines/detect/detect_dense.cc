@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/detect/detect_dense.h"
+#include "pipelines/detect/detect_dense.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/tracking/detection/frame_detector.h"
+#include "geometry/base/check.h"
+#include "geometry/base/prefetcher.h"
+#include "tracking/detection/frame_detector.h"
 
 namespace bodyloom {
 namespace {

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/label_image.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/pipelines/detect/detect_people.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/tracking/detection/iuv_to_dense.h"
+#include "data_tools/observations/people.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/label_image.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/detect/detect_people.h"
+#include "render/image/image.h"
+#include "tracking/detection/iuv_to_dense.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/detect/detect_people.h"
+#include "pipelines/detect/detect_people.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/tracking/detection/people_between.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
+#include "geometry/base/prefetcher.h"
+#include "pipelines/files.h"
+#include "tracking/detection/people_between.h"
 
 namespace bodyloom {
 namespace {

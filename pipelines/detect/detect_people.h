@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/tracking/detection/frame_detector.h"
+#include "data_tools/observations/people.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/scene/observations.h"
+#include "render/image/image.h"
+#include "tracking/detection/frame_detector.h"
 
 namespace bodyloom {
 

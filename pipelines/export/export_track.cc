@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/export/export_track.h"
+#include "pipelines/export/export_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,23 +9,23 @@
 #include <memory>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/export/c3d_writer.h"
-#include "bodyloom/data_tools/export/camera_writers.h"
-#include "bodyloom/data_tools/export/export_scene.h"
-#include "bodyloom/data_tools/export/markers.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/amass.h"
-#include "bodyloom/data_tools/motion/bvh_writer.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/render/view/floor.h"
-#include "bodyloom/render/view/follow_view.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/export/c3d_writer.h"
+#include "data_tools/export/camera_writers.h"
+#include "data_tools/export/export_scene.h"
+#include "data_tools/export/markers.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/amass.h"
+#include "data_tools/motion/bvh_writer.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/scene/track.h"
+#include "pipelines/files.h"
+#include "render/view/floor.h"
+#include "render/view/follow_view.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/export/glb_writer.h"
-#include "bodyloom/data_tools/motion/bvh_writer.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/scene/world_frame.h"
+#include "data_tools/export/glb_writer.h"
+#include "data_tools/motion/bvh_writer.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "geometry/scene/world_frame.h"
 
 namespace bodyloom {
 

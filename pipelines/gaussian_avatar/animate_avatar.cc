@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/gaussian_avatar/animate_avatar.h"
+#include "pipelines/gaussian_avatar/animate_avatar.h"
 
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/avatar/gaussian_ply.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/pipelines/animate/animation_limits.h"
-#include "bodyloom/pipelines/animate/background.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/gaussian_avatar/avatar_clip.h"
-#include "bodyloom/pipelines/gaussian_avatar/avatar_page.h"
-#include "bodyloom/pipelines/gaussian_avatar/avatar_scores.h"
-#include "bodyloom/pipelines/gaussian_avatar/shown_avatar.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/render/gaussian_avatar/avatar_image.h"
-#include "bodyloom/render/view/follow_view.h"
+#include "data_tools/avatar/gaussian_ply.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/percentile.h"
+#include "pipelines/animate/animation_limits.h"
+#include "pipelines/animate/background.h"
+#include "pipelines/files.h"
+#include "pipelines/gaussian_avatar/avatar_clip.h"
+#include "pipelines/gaussian_avatar/avatar_page.h"
+#include "pipelines/gaussian_avatar/avatar_scores.h"
+#include "pipelines/gaussian_avatar/shown_avatar.h"
+#include "pipelines/report_json.h"
+#include "render/gaussian_avatar/avatar_image.h"
+#include "render/view/follow_view.h"
 
 namespace bodyloom {
 namespace {

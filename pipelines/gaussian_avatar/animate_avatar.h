@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/gaussian_avatar/avatar_scores.h"
-#include "bodyloom/pipelines/gaussian_avatar/shown_avatar.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/scene/track.h"
+#include "pipelines/gaussian_avatar/avatar_scores.h"
+#include "pipelines/gaussian_avatar/shown_avatar.h"
 
 namespace bodyloom {
 

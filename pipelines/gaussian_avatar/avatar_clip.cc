@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/gaussian_avatar/avatar_clip.h"
+#include "pipelines/gaussian_avatar/avatar_clip.h"
 
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/files.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "pipelines/files.h"
 
 namespace bodyloom {
 namespace {

@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/gaussian_avatar/learning/training_view.h"
-#include "bodyloom/render/gaussian_avatar/posed_avatar.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
+#include "render/gaussian_avatar/learning/training_view.h"
+#include "render/gaussian_avatar/posed_avatar.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/gaussian_avatar/avatar_page.h"
+#include "pipelines/gaussian_avatar/avatar_page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/page/report_page.h"
-#include "bodyloom/render/gaussian_avatar/pose_gaussians.h"
+#include "geometry/base/check.h"
+#include "pipelines/page/report_page.h"
+#include "render/gaussian_avatar/pose_gaussians.h"
 
 extern "C" const unsigned char bodyloom_page_avatar_begin[], bodyloom_page_avatar_end[];
 

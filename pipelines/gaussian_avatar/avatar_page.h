@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
-#include "bodyloom/render/splat/camera_gaussians.h"
+#include "geometry/scene/camera.h"
+#include "render/gaussian_avatar/avatar_frame.h"
+#include "render/gaussian_avatar/gaussian_body.h"
+#include "render/splat/camera_gaussians.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/gaussian_avatar/avatar_scores.h"
+#include "pipelines/gaussian_avatar/avatar_scores.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/evaluation/image_metrics.h"
-#include "bodyloom/data_tools/evaluation/ssim.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/render/gaussian_avatar/avatar_image.h"
+#include "data_tools/evaluation/image_metrics.h"
+#include "data_tools/evaluation/ssim.h"
+#include "geometry/base/check.h"
+#include "pipelines/report_text.h"
+#include "render/gaussian_avatar/avatar_image.h"
 
 namespace bodyloom {
 

@@ -10,8 +10,8 @@
 #include <span>
 #include <string>
 
-#include "bodyloom/render/gaussian_avatar/learning/training_view.h"
-#include "bodyloom/render/splat/splat_picture.h"
+#include "render/gaussian_avatar/learning/training_view.h"
+#include "render/splat/splat_picture.h"
 
 namespace bodyloom {
 

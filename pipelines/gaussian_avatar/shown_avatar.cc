@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/gaussian_avatar/shown_avatar.h"
+#include "pipelines/gaussian_avatar/shown_avatar.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/pipelines/animate/animation_limits.h"
-#include "bodyloom/pipelines/gaussian_avatar/train_avatar.h"
-#include "bodyloom/render/gaussian_avatar/worn_garment.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/motion_tools.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/track_edits.h"
+#include "pipelines/animate/animation_limits.h"
+#include "pipelines/gaussian_avatar/train_avatar.h"
+#include "render/gaussian_avatar/worn_garment.h"
 
 namespace bodyloom {
 

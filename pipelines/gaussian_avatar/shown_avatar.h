@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/avatar/avatar_file.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/gaussian_avatar/avatar_painter.h"
-#include "bodyloom/render/gaussian_avatar/posed_avatar.h"
+#include "data_tools/avatar/avatar_file.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "render/gaussian_avatar/avatar_painter.h"
+#include "render/gaussian_avatar/posed_avatar.h"
 
 namespace bodyloom {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/gaussian_avatar/train_avatar.h"
-#include "bodyloom/pipelines/gaussian_avatar/avatar_scores.h"
+#include "pipelines/gaussian_avatar/train_avatar.h"
+#include "pipelines/gaussian_avatar/avatar_scores.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,26 +12,26 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/avatar/avatar_file.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/pipelines/clip_span.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/pipelines/runs/run_config.h"
-#include "bodyloom/render/garment/clip_clothes.h"
-#include "bodyloom/render/gaussian_avatar/cloth_bones.h"
-#include "bodyloom/render/gaussian_avatar/cloth_gaussians.h"
-#include "bodyloom/render/gaussian_avatar/learning/loose_gaussians.h"
-#include "bodyloom/render/gaussian_avatar/learning/pose_refiner.h"
-#include "bodyloom/render/gaussian_avatar/skin_gaussians.h"
-#include "bodyloom/render/gaussian_avatar/worn_garment.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/avatar/avatar_file.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "pipelines/clip_span.h"
+#include "pipelines/files.h"
+#include "pipelines/report_json.h"
+#include "pipelines/report_text.h"
+#include "pipelines/runs/run_config.h"
+#include "render/garment/clip_clothes.h"
+#include "render/gaussian_avatar/cloth_bones.h"
+#include "render/gaussian_avatar/cloth_gaussians.h"
+#include "render/gaussian_avatar/learning/loose_gaussians.h"
+#include "render/gaussian_avatar/learning/pose_refiner.h"
+#include "render/gaussian_avatar/skin_gaussians.h"
+#include "render/gaussian_avatar/worn_garment.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/gaussian_avatar/avatar_clip.h"
-#include "bodyloom/pipelines/gaussian_avatar/avatar_scores.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/stopwatch.h"
+#include "pipelines/gaussian_avatar/avatar_clip.h"
+#include "pipelines/gaussian_avatar/avatar_scores.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/motions/survey_motions.h"
+#include "pipelines/motions/survey_motions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/files.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
+#include "pipelines/files.h"
 
 namespace bodyloom {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/motion_quality.h"
-#include "bodyloom/data_tools/motion/motion_library.h"
-#include "bodyloom/data_tools/motion/motion_sheet.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "data_tools/evaluation/motion_quality.h"
+#include "data_tools/motion/motion_library.h"
+#include "data_tools/motion/motion_sheet.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 

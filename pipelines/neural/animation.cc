@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/animation.h"
+#include "pipelines/neural/animation.h"
 
 #include <algorithm>
 #include <iterator>
 #include <sstream>
 
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/percentile.h"
+#include "pipelines/files.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/animate/background.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/scene/track.h"
+#include "pipelines/animate/background.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

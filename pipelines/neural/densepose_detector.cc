@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/densepose_detector.h"
+#include "pipelines/neural/densepose_detector.h"
 
 #include <limits>
 #include <memory>
 
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/metrics/temporal_lpips.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "neural/base/runtime.h"
+#include "neural/metrics/temporal_lpips.h"
+#include "pipelines/neural/weights_folder.h"
 
 namespace bodyloom {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/densepose/densepose_network.h"
-#include "bodyloom/pipelines/detect/detect_dense.h"
-#include "bodyloom/pipelines/score/frame_metric.h"
+#include "neural/densepose/densepose_network.h"
+#include "pipelines/detect/detect_dense.h"
+#include "pipelines/score/frame_metric.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/training_session.h"
+#include "pipelines/neural/training_session.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/pipelines/files.h"
+#include "data_tools/formats/atomic_file.h"
+#include "pipelines/files.h"
 
 namespace bodyloom {
 

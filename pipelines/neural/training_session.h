@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/training/training_run.h"
+#include "geometry/base/callbacks.h"
+#include "neural/training/training_run.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "pipelines/neural/weights_folder.h"
 
 #include <array>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/weights_file.h"
-#include "bodyloom/neural/cards/network_cards.h"
+#include "data_tools/formats/weights_file.h"
+#include "neural/cards/network_cards.h"
 
 namespace bodyloom {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/evaluation/ssim.h"
-#include "bodyloom/neural/networks/named_weights.h"
+#include "data_tools/evaluation/ssim.h"
+#include "neural/networks/named_weights.h"
 
 namespace bodyloom {
 

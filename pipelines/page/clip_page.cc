@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/page/clip_page.h"
+#include "pipelines/page/clip_page.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/page/report_page.h"
-#include "bodyloom/pipelines/report_text.h"
+#include "geometry/base/check.h"
+#include "pipelines/page/report_page.h"
+#include "pipelines/report_text.h"
 
 extern "C" const unsigned char bodyloom_page_viewer_begin[], bodyloom_page_viewer_end[];
 

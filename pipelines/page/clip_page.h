@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/track.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

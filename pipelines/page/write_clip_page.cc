@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/page/write_clip_page.h"
+#include "pipelines/page/write_clip_page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +8,18 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/export/glb_writer.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/bvh_writer.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_encoder.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/pipelines/page/clip_page.h"
-#include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/texture/complete/person_texture.h"
-#include "bodyloom/render/view/floor.h"
+#include "data_tools/export/glb_writer.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/bvh_writer.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_encoder.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/camera_path.h"
+#include "pipelines/page/clip_page.h"
+#include "pipelines/video/track_video.h"
+#include "render/image/image.h"
+#include "render/texture/complete/person_texture.h"
+#include "render/view/floor.h"
 
 namespace bodyloom {
 namespace {

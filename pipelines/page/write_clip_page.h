@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "data_tools/observations/load_cameras.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/photo_avatar/animate_person.h"
+#include "pipelines/photo_avatar/animate_person.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,26 +9,26 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/pipelines/animate/animation_limits.h"
-#include "bodyloom/pipelines/animate/background.h"
-#include "bodyloom/pipelines/animate/relight_frames.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/photo_avatar/person_folder.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/render/garment/person_cloth.h"
-#include "bodyloom/render/photo_avatar/draw_person.h"
-#include "bodyloom/render/photo_avatar/wear_clothes.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/percentile.h"
+#include "geometry/cloth/body_with_garment.h"
+#include "geometry/scene/track_edits.h"
+#include "pipelines/animate/animation_limits.h"
+#include "pipelines/animate/background.h"
+#include "pipelines/animate/relight_frames.h"
+#include "pipelines/files.h"
+#include "pipelines/photo_avatar/person_folder.h"
+#include "pipelines/report_json.h"
+#include "render/garment/person_cloth.h"
+#include "render/photo_avatar/draw_person.h"
+#include "render/photo_avatar/wear_clothes.h"
+#include "render/uv_maps/posed_track.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 namespace {

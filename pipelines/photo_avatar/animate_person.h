@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/stopwatch.h"
+#include "pipelines/photo_avatar/make_photo_person.h"
 
 namespace bodyloom {
 

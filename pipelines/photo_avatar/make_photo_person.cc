@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
+#include "pipelines/photo_avatar/make_photo_person.h"
 
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/photo_segmentation.h"
-#include "bodyloom/data_tools/learned/parser_weights_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/track/detected_people.h"
-#include "bodyloom/pipelines/track/scene_inputs.h"
-#include "bodyloom/render/photo_avatar/parts_in_image.h"
-#include "bodyloom/render/photo_avatar/photo_person_builder.h"
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/overlay.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/detection/clothes_parser.h"
+#include "data_tools/datasets/photo_segmentation.h"
+#include "data_tools/learned/parser_weights_io.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/files.h"
+#include "pipelines/track/detected_people.h"
+#include "pipelines/track/scene_inputs.h"
+#include "render/photo_avatar/parts_in_image.h"
+#include "render/photo_avatar/photo_person_builder.h"
+#include "render/texture/planar_image.h"
+#include "render/view/overlay.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/detection/clothes_parser.h"
 
 namespace bodyloom {
 

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/render/photo_avatar/photo_person.h"
-#include "bodyloom/render/photo_avatar/photo_person_builder.h"
-#include "bodyloom/tracking/detection/clothes_parser.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/body/body_model.h"
+#include "pipelines/track/track_request.h"
+#include "render/photo_avatar/photo_person.h"
+#include "render/photo_avatar/photo_person_builder.h"
+#include "tracking/detection/clothes_parser.h"
 
 namespace bodyloom {
 

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/photo_avatar/person_folder.h"
+#include "pipelines/photo_avatar/person_folder.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/render/garment/person_cloth.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "geometry/cloth/body_with_garment.h"
+#include "pipelines/photo_avatar/make_photo_person.h"
+#include "pipelines/report_json.h"
+#include "render/garment/person_cloth.h"
 
 namespace bodyloom {
 namespace {

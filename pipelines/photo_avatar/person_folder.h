@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/render/photo_avatar/photo_person.h"
+#include "render/photo_avatar/photo_person.h"
 
 namespace bodyloom {
 

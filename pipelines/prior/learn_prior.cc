@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/prior/learn_prior.h"
+#include "pipelines/prior/learn_prior.h"
 
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/motion/load_motion.h"
 
 namespace bodyloom {
 

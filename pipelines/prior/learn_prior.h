@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/learned/pose_prior_learning.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "data_tools/learned/pose_prior_learning.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 

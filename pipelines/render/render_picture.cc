@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/render/render_picture.h"
+#include "pipelines/render/render_picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/view/contact_sheet.h"
-#include "bodyloom/render/view/overlay.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/camera_path.h"
+#include "pipelines/report_text.h"
+#include "render/image/palette.h"
+#include "render/view/contact_sheet.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/vertex_errors.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/view/attribute_picture.h"
-#include "bodyloom/render/view/error_colours.h"
-#include "bodyloom/render/view/floor.h"
-#include "bodyloom/render/view/follow_view.h"
-#include "bodyloom/render/view/shaded_mesh.h"
+#include "data_tools/evaluation/vertex_errors.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "render/image/image.h"
+#include "render/view/attribute_picture.h"
+#include "render/view/error_colours.h"
+#include "render/view/floor.h"
+#include "render/view/follow_view.h"
+#include "render/view/shaded_mesh.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/render/render_sinks.h"
+#include "pipelines/render/render_sinks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,14 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/view/caption.h"
-#include "bodyloom/render/view/contact_sheet.h"
-#include "bodyloom/render/view/error_colours.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
+#include "render/image/palette.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/view/caption.h"
+#include "render/view/contact_sheet.h"
+#include "render/view/error_colours.h"
 
 namespace bodyloom {
 namespace {

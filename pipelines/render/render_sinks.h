@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/pipelines/render/render_picture.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/video/video_writer.h"
+#include "pipelines/render/render_picture.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/render/render_track.h"
+#include "pipelines/render/render_track.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,19 +7,19 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/render/render_sinks.h"
-#include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/scene/camera_path.h"
+#include "geometry/scene/track.h"
+#include "pipelines/files.h"
+#include "pipelines/render/render_sinks.h"
+#include "pipelines/video/track_video.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

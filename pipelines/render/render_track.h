@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/render/render_picture.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/render/render_picture.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/runs/motion_run.h"
+#include "pipelines/runs/motion_run.h"
 
 #include <Eigen/Dense>
 #include <nlohmann/json.hpp>
@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/dense_history.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/pipelines/runs/run_config.h"
+#include "data_tools/descriptors/dense_history.h"
+#include "data_tools/formats/json_reader.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "pipelines/runs/run_config.h"
 
 namespace bodyloom {
 

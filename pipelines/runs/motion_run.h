@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
-#include "bodyloom/neural/motion/motion_config.h"
+#include "geometry/uv_maps/descriptor_options.h"
+#include "neural/motion/motion_config.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/runs/run_config.h"
+#include "pipelines/runs/run_config.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/json_reader.h"
+#include "data_tools/formats/json_reader.h"
 
 namespace bodyloom {
 

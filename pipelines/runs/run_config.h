@@ -5,8 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/photo/photo_config.h"
+#include "neural/guided/guided_config.h"
+#include "neural/photo/photo_config.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/compare_results.h"
+#include "pipelines/score/compare_results.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,16 +8,16 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/uv_maps/velocity_stencil.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/view/caption.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/uv_maps/velocity_stencil.h"
+#include "pipelines/files.h"
+#include "render/image/palette.h"
+#include "render/view/caption.h"
 
 namespace bodyloom {
 namespace {

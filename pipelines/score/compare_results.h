@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/speed_reaction.h"
-#include "bodyloom/data_tools/evaluation/ssim.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/score/frame_metric.h"
-#include "bodyloom/pipelines/score/metric_table.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/view/error_colours.h"
+#include "data_tools/evaluation/speed_reaction.h"
+#include "data_tools/evaluation/ssim.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/score/frame_metric.h"
+#include "pipelines/score/metric_table.h"
+#include "render/image/image.h"
+#include "render/view/error_colours.h"
 
 namespace bodyloom {
 

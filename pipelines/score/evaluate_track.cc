@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/evaluate_track.h"
+#include "pipelines/score/evaluate_track.h"
 
 #include <filesystem>
 #include <memory>
@@ -9,21 +9,21 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/aist_evaluation.h"
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
-#include "bodyloom/data_tools/evaluation/self_penetration.h"
-#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
-#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
-#include "bodyloom/data_tools/evaluation/world_drift.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/pipelines/files.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/aist_evaluation.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/part_label_evaluation.h"
+#include "data_tools/evaluation/self_penetration.h"
+#include "data_tools/evaluation/triangulated_clip.h"
+#include "data_tools/evaluation/truth_evaluation.h"
+#include "data_tools/evaluation/world_drift.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/part_labels.h"
+#include "geometry/base/parallel.h"
+#include "geometry/scene/camera_path.h"
+#include "pipelines/files.h"
 
 namespace bodyloom {
 namespace {

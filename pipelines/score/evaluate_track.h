@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/score/rig_clip.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "pipelines/score/rig_clip.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/frame_metric.h"
+#include "pipelines/score/frame_metric.h"
 
 #include <cstdint>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/ssim.h"
-#include "bodyloom/pipelines/score/frame_pairs.h"
+#include "data_tools/evaluation/ssim.h"
+#include "pipelines/score/frame_pairs.h"
 
 namespace bodyloom {
 

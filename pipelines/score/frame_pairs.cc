@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/frame_pairs.h"
+#include "pipelines/score/frame_pairs.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -9,11 +9,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/observations/frame_numbers.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
+#include "data_tools/observations/frame_numbers.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
 
 namespace bodyloom {
 namespace {

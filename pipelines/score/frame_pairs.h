@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/image_metrics.h"
-#include "bodyloom/render/image/image.h"
+#include "data_tools/evaluation/image_metrics.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/metric_table.h"
+#include "pipelines/score/metric_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/report_text.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

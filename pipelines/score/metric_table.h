@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/speed_reaction.h"
-#include "bodyloom/pipelines/score/frame_metric.h"
+#include "data_tools/evaluation/speed_reaction.h"
+#include "pipelines/score/frame_metric.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/rig_clip.h"
+#include "pipelines/score/rig_clip.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
-#include "bodyloom/data_tools/observations/frame_numbers.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/track/detected_people.h"
-#include "bodyloom/pipelines/video/track_video.h"
+#include "data_tools/evaluation/triangulated_clip.h"
+#include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/observations/load_detections.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
+#include "pipelines/track/detected_people.h"
+#include "pipelines/video/track_video.h"
 
 namespace bodyloom {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/held_out_views.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/evaluation/held_out_views.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/synthesis/motion_source.h"
+#include "pipelines/synthesis/motion_source.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

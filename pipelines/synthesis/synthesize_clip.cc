@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
+#include "pipelines/synthesis/synthesize_clip.h"
 
 #include <filesystem>
 #include <memory>
 #include <sstream>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/load_camera_path.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/view/overlay.h"
-#include "bodyloom/render/view/shaded_mesh.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/load_camera_path.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/scene/camera_path.h"
+#include "pipelines/files.h"
+#include "pipelines/video/track_video.h"
+#include "render/image/palette.h"
+#include "render/view/overlay.h"
+#include "render/view/shaded_mesh.h"
 
 namespace bodyloom {
 namespace {

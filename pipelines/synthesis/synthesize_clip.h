@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/synthesis/motion_source.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/synthesis/motion_source.h"
 
 namespace bodyloom {
 

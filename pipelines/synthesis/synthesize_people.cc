@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/synthesis/synthesize_people.h"
+#include "pipelines/synthesis/synthesize_people.h"
 
 #include <array>
 #include <cstdio>
@@ -7,14 +7,14 @@
 #include <sstream>
 #include <utility>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
-#include "bodyloom/data_tools/motion/motion_library.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/pipelines/synthesis/motion_source.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/multi_person_dataset.h"
+#include "data_tools/motion/motion_library.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/video/image_file.h"
+#include "pipelines/files.h"
+#include "pipelines/report_text.h"
+#include "pipelines/synthesis/motion_source.h"
 
 namespace bodyloom {
 namespace {

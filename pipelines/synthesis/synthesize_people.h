@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/people/make_multi_person_dataset.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "data_tools/synthesis/people/make_multi_person_dataset.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/synthesis/synthesize_person.h"
+#include "pipelines/synthesis/synthesize_person.h"
 
 #include <array>
 #include <cstdio>
@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/report_text.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/cloth/cloth_run.h"
+#include "pipelines/files.h"
+#include "pipelines/report_json.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

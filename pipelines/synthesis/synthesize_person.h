@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/synthesis/motion_source.h"
+#include "data_tools/synthesis/people/make_single_person_dataset.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/synthesis/motion_source.h"
 
 namespace bodyloom {
 

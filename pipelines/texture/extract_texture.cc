@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/texture/extract_texture.h"
+#include "pipelines/texture/extract_texture.h"
 
 #include <cmath>
 #include <cstdio>
@@ -8,18 +8,18 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_frame_times.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/video/track_video.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_frame_times.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/camera_path.h"
+#include "geometry/scene/track.h"
+#include "pipelines/files.h"
+#include "pipelines/report_json.h"
+#include "pipelines/video/track_video.h"
 
 namespace bodyloom {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/render/texture/complete/person_texture.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/stopwatch.h"
+#include "render/texture/complete/person_texture.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/clip_camera_path.h"
+#include "pipelines/track/clip_camera_path.h"
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/report_text.h"
+#include "geometry/base/check.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/load_camera_path.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "data_tools/observations/load_camera_path.h"
+#include "geometry/scene/camera_path.h"
+#include "pipelines/track/track_request.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/detected_people.h"
+#include "pipelines/track/detected_people.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/data_tools/observations/frame_numbers.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/pipelines/video/track_video.h"
+#include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/load_detections.h"
+#include "pipelines/video/track_video.h"
 
 namespace bodyloom {
 

@@ -5,13 +5,13 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/pipelines/detect/detect_people.h"
-#include "bodyloom/pipelines/track/scene_inputs.h"
-#include "bodyloom/pipelines/track/track_request.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/observations/people.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/detect/detect_people.h"
+#include "pipelines/track/scene_inputs.h"
+#include "pipelines/track/track_request.h"
 
 namespace bodyloom {
 

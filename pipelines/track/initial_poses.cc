@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/initial_poses.h"
+#include "pipelines/track/initial_poses.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/data_tools/estimates/body_estimate.h"
-#include "bodyloom/data_tools/estimates/load_estimate.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/estimates/body_estimate.h"
+#include "data_tools/estimates/load_estimate.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/overlay_video.h"
+#include "pipelines/track/overlay_video.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <memory>
 #include <optional>
 
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/pipelines/video/track_video.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/prefetcher.h"
+#include "pipelines/video/track_video.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

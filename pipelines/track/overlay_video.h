@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/view/people_overlay.h"
+#include "data_tools/observations/load_cameras.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
+#include "render/view/people_overlay.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/people_in_clip.h"
+#include "pipelines/track/people_in_clip.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/pipelines/track/clip_camera_path.h"
-#include "bodyloom/pipelines/video/track_video.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/track/clip_camera_path.h"
+#include "pipelines/video/track_video.h"
 
 namespace bodyloom {
 namespace {

@@ -5,15 +5,15 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/pipelines/detect/detect_people.h"
-#include "bodyloom/pipelines/track/detected_people.h"
-#include "bodyloom/pipelines/track/scene_inputs.h"
-#include "bodyloom/pipelines/track/track_people_report.h"
-#include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/people/track_people.h"
+#include "data_tools/observations/people.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/scene/camera.h"
+#include "pipelines/detect/detect_people.h"
+#include "pipelines/track/detected_people.h"
+#include "pipelines/track/scene_inputs.h"
+#include "pipelines/track/track_people_report.h"
+#include "pipelines/track/track_request.h"
+#include "tracking/people/track_people.h"
 
 namespace bodyloom {
 

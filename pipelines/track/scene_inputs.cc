@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/scene_inputs.h"
+#include "pipelines/track/scene_inputs.h"
 
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/files.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
+#include "pipelines/files.h"
 
 namespace bodyloom {
 namespace {

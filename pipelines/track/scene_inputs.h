@@ -5,15 +5,15 @@
 #include <memory>
 #include <optional>
 
-#include "bodyloom/data_tools/observations/load_camera_path.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/lifter_weights.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/pose_prior.h"
-#include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/problem/track_input.h"
+#include "data_tools/observations/load_camera_path.h"
+#include "data_tools/observations/load_cameras.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/lifter_weights.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/pose_prior.h"
+#include "pipelines/track/track_request.h"
+#include "tracking/problem/track_input.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/solve_track.h"
+#include "pipelines/track/solve_track.h"
 
 #include <string>
 
-#include "bodyloom/pipelines/track/track_inputs.h"
-#include "bodyloom/render/view/floor.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/clip/track_plan.h"
-#include "bodyloom/tracking/live/track_live.h"
+#include "pipelines/track/track_inputs.h"
+#include "render/view/floor.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/clip/track_plan.h"
+#include "tracking/live/track_live.h"
 
 namespace bodyloom {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/track/scene_inputs.h"
-#include "bodyloom/pipelines/track/track_inputs.h"
-#include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/track/scene_inputs.h"
+#include "pipelines/track/track_inputs.h"
+#include "pipelines/track/track_request.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

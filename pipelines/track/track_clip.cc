@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_clip.h"
+#include "pipelines/track/track_clip.h"
 
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/page/write_clip_page.h"
-#include "bodyloom/pipelines/track/overlay_video.h"
-#include "bodyloom/pipelines/track/solve_track.h"
-#include "bodyloom/pipelines/track/track_inputs.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/scene/camera_path.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/files.h"
+#include "pipelines/page/write_clip_page.h"
+#include "pipelines/track/overlay_video.h"
+#include "pipelines/track/solve_track.h"
+#include "pipelines/track/track_inputs.h"
 
 namespace bodyloom {
 namespace {

@@ -2,9 +2,9 @@
 /// A clip tracked, from files to files: detections in; track, overlay video and summary out.
 #pragma once
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/track/track_report.h"
-#include "bodyloom/pipelines/track/track_request.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/track/track_report.h"
+#include "pipelines/track/track_request.h"
 
 namespace bodyloom {
 

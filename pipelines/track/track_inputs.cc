@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_inputs.h"
+#include "pipelines/track/track_inputs.h"
 
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/track/detected_people.h"
-#include "bodyloom/tracking/detection/iuv_to_dense.h"
-#include "bodyloom/tracking/initialise/swap_repair.h"
-#include "bodyloom/tracking/lifter/given_landmarks.h"
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/observations/part_labels.h"
+#include "geometry/base/check.h"
+#include "pipelines/files.h"
+#include "pipelines/track/detected_people.h"
+#include "tracking/detection/iuv_to_dense.h"
+#include "tracking/initialise/swap_repair.h"
+#include "tracking/lifter/given_landmarks.h"
+#include "tracking/lifter/lift_keypoints.h"
 
 namespace bodyloom {
 namespace {

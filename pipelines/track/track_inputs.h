@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/track/clip_camera_path.h"
-#include "bodyloom/pipelines/track/initial_poses.h"
-#include "bodyloom/pipelines/track/scene_inputs.h"
-#include "bodyloom/pipelines/track/track_request.h"
-#include "bodyloom/tracking/lifter/lifter_reading.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
+#include "pipelines/track/clip_camera_path.h"
+#include "pipelines/track/initial_poses.h"
+#include "pipelines/track/scene_inputs.h"
+#include "pipelines/track/track_request.h"
+#include "tracking/lifter/lifter_reading.h"
 
 namespace bodyloom {
 

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_people_clip.h"
+#include "pipelines/track/track_people_clip.h"
 
 #include <filesystem>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/observations/people_npz.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/detect/cut_masks.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/page/write_clip_page.h"
-#include "bodyloom/pipelines/track/overlay_video.h"
-#include "bodyloom/pipelines/track/track_inputs.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/observations/people_npz.h"
+#include "geometry/base/check.h"
+#include "pipelines/detect/cut_masks.h"
+#include "pipelines/files.h"
+#include "pipelines/page/write_clip_page.h"
+#include "pipelines/track/overlay_video.h"
+#include "pipelines/track/track_inputs.h"
 
 namespace bodyloom {
 namespace {

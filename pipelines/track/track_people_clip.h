@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/track/people_in_clip.h"
-#include "bodyloom/pipelines/track/scene_inputs.h"
-#include "bodyloom/pipelines/track/track_people_report.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/track/people_in_clip.h"
+#include "pipelines/track/scene_inputs.h"
+#include "pipelines/track/track_people_report.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_people_report.h"
-#include "bodyloom/pipelines/detect/cut_masks.h"
+#include "pipelines/track/track_people_report.h"
+#include "pipelines/detect/cut_masks.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/pipelines/track/clip_camera_path.h"
-#include "bodyloom/pipelines/track/track_report.h"
+#include "geometry/base/check.h"
+#include "pipelines/report_json.h"
+#include "pipelines/report_text.h"
+#include "pipelines/track/clip_camera_path.h"
+#include "pipelines/track/track_report.h"
 
 namespace bodyloom {
 namespace {

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/detect/detect_clip.h"
-#include "bodyloom/pipelines/track/clip_camera_path.h"
-#include "bodyloom/tracking/people/occlusion.h"
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/room/shared_scene.h"
+#include "geometry/base/stopwatch.h"
+#include "pipelines/detect/detect_clip.h"
+#include "pipelines/track/clip_camera_path.h"
+#include "tracking/people/occlusion.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/room/shared_scene.h"
 
 namespace bodyloom {
 

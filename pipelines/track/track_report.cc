@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_report.h"
+#include "pipelines/track/track_report.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/report_text.h"
-#include "bodyloom/pipelines/track/clip_camera_path.h"
+#include "pipelines/report_json.h"
+#include "pipelines/report_text.h"
+#include "pipelines/track/clip_camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/pipelines/track/clip_camera_path.h"
-#include "bodyloom/tracking/clip/initialiser_gain.h"
-#include "bodyloom/tracking/clip/track_plan.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/base/stopwatch.h"
+#include "pipelines/track/clip_camera_path.h"
+#include "tracking/clip/initialiser_gain.h"
+#include "tracking/clip/track_plan.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

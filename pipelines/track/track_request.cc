@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_request.h"
+#include "pipelines/track/track_request.h"
 
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "data_tools/observations/keypoint_conventions.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "bodyloom/tracking/detection/frame_detector.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "tracking/detection/frame_detector.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

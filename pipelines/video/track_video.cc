@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/video/track_video.h"
+#include "pipelines/video/track_video.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/video/video_frame_times.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/video/video_frame_times.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, int width, int height,

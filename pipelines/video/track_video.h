@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

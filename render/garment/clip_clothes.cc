@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/clip_clothes.h"
+#include "render/garment/clip_clothes.h"
 
 #include <algorithm>
 #include <array>
@@ -13,13 +13,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/render/garment/fit_clothes.h"
-#include "bodyloom/render/garment/person_cloth.h"
-#include "bodyloom/render/garment/person_silhouette.h"
-#include "bodyloom/render/view/overlay.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/percentile.h"
+#include "geometry/scene/track_edits.h"
+#include "render/garment/fit_clothes.h"
+#include "render/garment/person_cloth.h"
+#include "render/garment/person_silhouette.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

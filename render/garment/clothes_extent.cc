@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/clothes_extent.h"
+#include "render/garment/clothes_extent.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/texture/complete/body_part_map.h"
+#include "geometry/base/check.h"
+#include "render/texture/complete/body_part_map.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/clothes_offsets.h"
+#include "render/garment/clothes_offsets.h"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/texture/body_regions.h"
+#include "geometry/base/check.h"
+#include "geometry/body/normals.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/texture/body_regions.h"
 
 namespace bodyloom {
 namespace {

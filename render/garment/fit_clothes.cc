@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/fit_clothes.h"
+#include "render/garment/fit_clothes.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,17 +7,17 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/cloth/body_obstacles.h"
-#include "bodyloom/geometry/cloth/cloth_body.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/render/garment/person_silhouette.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/view/floor.h"
-#include "bodyloom/render/view/overlay.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
+#include "geometry/cloth/body_obstacles.h"
+#include "geometry/cloth/cloth_body.h"
+#include "geometry/cloth/cloth_run.h"
+#include "geometry/scene/track_edits.h"
+#include "render/garment/person_silhouette.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/view/floor.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

@@ -17,13 +17,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/cloth/loose_garment.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/garment/clothes_offsets.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/cloth_run.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
+#include "render/garment/clothes_offsets.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/person_cloth.h"
+#include "render/garment/person_cloth.h"
 
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/render/garment/fit_clothes.h"
-#include "bodyloom/render/view/overlay.h"
+#include "geometry/base/check.h"
+#include "geometry/cloth/cloth_run.h"
+#include "render/garment/fit_clothes.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

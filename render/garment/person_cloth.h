@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_body.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/cloth/loose_garment.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/cloth_body.h"
+#include "geometry/cloth/cloth_run.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/person_silhouette.h"
+#include "render/garment/person_silhouette.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/render/view/view_camera.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/cloth/loose_garment.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/observations.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

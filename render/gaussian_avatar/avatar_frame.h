@@ -5,11 +5,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/cloth/loose_garment.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
 
 namespace bodyloom {
 

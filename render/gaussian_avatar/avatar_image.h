@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/scene/person_label.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/splat/splat_picture.h"
+#include "geometry/scene/person_label.h"
+#include "render/image/image.h"
+#include "render/splat/splat_picture.h"
 
 namespace bodyloom {
 

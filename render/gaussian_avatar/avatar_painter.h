@@ -5,10 +5,10 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/gaussian_avatar/pose_gradient.h"
-#include "bodyloom/render/splat/project_gaussians.h"
-#include "bodyloom/render/splat/splat_gradient.h"
+#include "geometry/scene/camera.h"
+#include "render/gaussian_avatar/pose_gradient.h"
+#include "render/splat/project_gaussians.h"
+#include "render/splat/splat_gradient.h"
 
 namespace bodyloom {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/cloth_bones.h"
+#include "render/gaussian_avatar/cloth_bones.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

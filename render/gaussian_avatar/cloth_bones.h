@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/cloth/cloth_nodes.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
+#include "geometry/cloth/cloth_nodes.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "render/gaussian_avatar/avatar_frame.h"
 
 namespace bodyloom {
 

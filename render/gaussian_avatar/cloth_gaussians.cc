@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/cloth_gaussians.h"
+#include "render/gaussian_avatar/cloth_gaussians.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 
 namespace bodyloom {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_nodes.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/cloth_nodes.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 
 namespace bodyloom {
 

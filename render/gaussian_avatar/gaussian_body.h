@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/render/splat/float_columns.h"
+#include "geometry/body/body_model.h"
+#include "render/splat/float_columns.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/pose_gaussians.h"
+#include "render/gaussian_avatar/pose_gaussians.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
 
 namespace bodyloom {
 

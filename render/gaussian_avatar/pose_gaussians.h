@@ -17,11 +17,11 @@
 #include <array>
 #include <string>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
-#include "bodyloom/render/gaussian_avatar/pose_simd.h"
-#include "bodyloom/render/splat/camera_gaussians.h"
+#include "geometry/math/arrays.h"
+#include "render/gaussian_avatar/avatar_frame.h"
+#include "render/gaussian_avatar/gaussian_body.h"
+#include "render/gaussian_avatar/pose_simd.h"
+#include "render/splat/camera_gaussians.h"
 
 namespace bodyloom {
 

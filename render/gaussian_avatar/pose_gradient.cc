@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/pose_gradient.h"
+#include "render/gaussian_avatar/pose_gradient.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/gaussian_avatar/pose_gaussians.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/gaussian_avatar/pose_gaussians.h"
 
 namespace bodyloom {
 namespace {

@@ -13,8 +13,8 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/render/gaussian_avatar/pose_gaussians.h"
+#include "geometry/math/arrays.h"
+#include "render/gaussian_avatar/pose_gaussians.h"
 
 namespace bodyloom {
 

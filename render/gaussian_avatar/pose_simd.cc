@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/pose_simd.h"
+#include "render/gaussian_avatar/pose_simd.h"
 
 #include <algorithm>
 
-#include "bodyloom/render/splat/camera_gaussians.h"
+#include "render/splat/camera_gaussians.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bodyloom/render/gaussian_avatar/pose_simd.cc"
+#define HWY_TARGET_INCLUDE "render/gaussian_avatar/pose_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include "bodyloom/geometry/math/quad-inl.h"
-#include "bodyloom/render/splat/float_math-inl.h"
-#include "bodyloom/render/splat/vec3-inl.h"
+#include "geometry/math/quad-inl.h"
+#include "render/splat/float_math-inl.h"
+#include "render/splat/vec3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bodyloom::avatar_internal::HWY_NAMESPACE {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 
 namespace bodyloom::avatar_internal {
 

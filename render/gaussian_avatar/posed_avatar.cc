@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/posed_avatar.h"
+#include "render/gaussian_avatar/posed_avatar.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/render/gaussian_avatar/cloth_bones.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "render/gaussian_avatar/cloth_bones.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/render/gaussian_avatar/avatar_painter.h"
-#include "bodyloom/render/gaussian_avatar/worn_garment.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "render/gaussian_avatar/avatar_painter.h"
+#include "render/gaussian_avatar/worn_garment.h"
+#include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/skin_gaussians.h"
+#include "render/gaussian_avatar/skin_gaussians.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 
 namespace bodyloom {
 namespace {

@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "geometry/body/body_model.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 
 namespace bodyloom {
 

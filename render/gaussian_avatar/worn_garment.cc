@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/worn_garment.h"
+#include "render/gaussian_avatar/worn_garment.h"
 
 #include <memory>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/render/garment/person_cloth.h"
-#include "bodyloom/render/gaussian_avatar/cloth_bones.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/scene/track_edits.h"
+#include "render/garment/person_cloth.h"
+#include "render/gaussian_avatar/cloth_bones.h"
 
 namespace bodyloom {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_nodes.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/garment/clip_clothes.h"
-#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/cloth_nodes.h"
+#include "geometry/scene/track.h"
+#include "render/garment/clip_clothes.h"
+#include "render/gaussian_avatar/avatar_frame.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image_mat.h"
+#include "geometry/base/check.h"
+#include "render/image/image_mat.h"
 
 namespace bodyloom {
 

@@ -4,7 +4,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

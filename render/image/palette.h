@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/image/parser_weights.h"
+#include "render/image/parser_weights.h"
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/render/image/person_layers.h"
+#include "geometry/math/arrays.h"
+#include "render/image/person_layers.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/image/person_layers.h"
+#include "render/image/person_layers.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/lighting/fit_lighting.h"
+#include "render/lighting/fit_lighting.h"
 
 #include <ceres/loss_function.h>
 #include <ceres/normal_prior.h>
@@ -12,7 +12,7 @@
 #include <cmath>
 #include <memory>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

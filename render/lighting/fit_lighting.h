@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/render/lighting/sh_lighting.h"
+#include "geometry/math/arrays.h"
+#include "render/lighting/sh_lighting.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/lighting/lit_surface.h"
+#include "render/lighting/lit_surface.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 namespace {

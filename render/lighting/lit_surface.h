@@ -10,14 +10,14 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/lighting/sh_lighting.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/normals.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "render/image/image.h"
+#include "render/lighting/sh_lighting.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/lighting/sh_lighting.h"
+#include "render/lighting/sh_lighting.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

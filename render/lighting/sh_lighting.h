@@ -20,7 +20,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/photo_avatar/draw_person.h"
+#include "render/photo_avatar/draw_person.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
 
 namespace bodyloom {
 namespace {

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/lighting/lit_surface.h"
-#include "bodyloom/render/photo_avatar/photo_person.h"
-#include "bodyloom/render/view/attribute_picture.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "render/lighting/lit_surface.h"
+#include "render/photo_avatar/photo_person.h"
+#include "render/view/attribute_picture.h"
 
 namespace bodyloom {
 

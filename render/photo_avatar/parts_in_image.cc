@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/photo_avatar/parts_in_image.h"
+#include "render/photo_avatar/parts_in_image.h"
 
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/photo_avatar/photo_person.h"
+#include "render/photo_avatar/photo_person.h"
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/render/garment/person_cloth.h"
-#include "bodyloom/render/view/overlay.h"
+#include "geometry/base/check.h"
+#include "geometry/cloth/body_with_garment.h"
+#include "geometry/scene/track_edits.h"
+#include "render/garment/person_cloth.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/loose_garment.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/lighting/lit_surface.h"
-#include "bodyloom/render/lighting/sh_lighting.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/track.h"
+#include "geometry/scene/track_edits.h"
+#include "render/image/image.h"
+#include "render/lighting/lit_surface.h"
+#include "render/lighting/sh_lighting.h"
 
 namespace bodyloom {
 

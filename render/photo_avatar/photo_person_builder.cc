@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/photo_avatar/photo_person_builder.h"
+#include "render/photo_avatar/photo_person_builder.h"
 
 #include <algorithm>
 #include <array>
@@ -9,22 +9,22 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/person_label.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/render/garment/clothes_offsets.h"
-#include "bodyloom/render/garment/person_cloth.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/photo_avatar/parts_in_image.h"
-#include "bodyloom/render/texture/body_regions.h"
-#include "bodyloom/render/texture/complete/whole_texture.h"
-#include "bodyloom/render/view/overlay.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
+#include "geometry/cloth/body_with_garment.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/person_label.h"
+#include "geometry/scene/track_edits.h"
+#include "render/garment/clothes_offsets.h"
+#include "render/garment/person_cloth.h"
+#include "render/image/image.h"
+#include "render/image/palette.h"
+#include "render/photo_avatar/parts_in_image.h"
+#include "render/texture/body_regions.h"
+#include "render/texture/complete/whole_texture.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

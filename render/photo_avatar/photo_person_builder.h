@@ -15,15 +15,15 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/garment/fit_clothes.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/lighting/fit_lighting.h"
-#include "bodyloom/render/lighting/lit_surface.h"
-#include "bodyloom/render/lighting/sh_lighting.h"
-#include "bodyloom/render/photo_avatar/photo_person.h"
-#include "bodyloom/render/photo_avatar/texel_labels.h"
-#include "bodyloom/render/texture/texture_extract.h"
+#include "geometry/scene/observations.h"
+#include "render/garment/fit_clothes.h"
+#include "render/image/image.h"
+#include "render/lighting/fit_lighting.h"
+#include "render/lighting/lit_surface.h"
+#include "render/lighting/sh_lighting.h"
+#include "render/photo_avatar/photo_person.h"
+#include "render/photo_avatar/texel_labels.h"
+#include "render/texture/texture_extract.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/photo_avatar/texel_labels.h"
+#include "render/photo_avatar/texel_labels.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/person_label.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/person_label.h"
 
 namespace bodyloom {
 namespace {

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/photo_avatar/wear_clothes.h"
+#include "render/photo_avatar/wear_clothes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/geometry/scene/person_label.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/texture/body_regions.h"
+#include "geometry/base/check.h"
+#include "geometry/body/normals.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/cloth/body_with_garment.h"
+#include "geometry/scene/person_label.h"
+#include "geometry/scene/track_edits.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/image/image.h"
+#include "render/image/palette.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/texture/body_regions.h"
 
 namespace bodyloom {
 namespace {

@@ -11,7 +11,7 @@
 /// trunk's length.
 #pragma once
 
-#include "bodyloom/render/photo_avatar/photo_person.h"
+#include "render/photo_avatar/photo_person.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/near_clip.h"
+#include "render/raster/near_clip.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "bodyloom/geometry/scene/camera.h"
+#include "geometry/scene/camera.h"
 
 namespace bodyloom {
 

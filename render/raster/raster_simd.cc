@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/raster_simd.h"
+#include "render/raster/raster_simd.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 // Instruction sets that add nothing to these loops, and those whose vectors have no size at compile time.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bodyloom/render/raster/raster_simd.cc"
+#define HWY_TARGET_INCLUDE "render/raster/raster_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/resolve_pixels.h"
+#include "render/raster/resolve_pixels.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/raster/raster_simd.h"
-#include "bodyloom/render/raster/resolve_simd.h"
-#include "bodyloom/render/raster/visible_points.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/raster/raster_simd.h"
+#include "render/raster/resolve_simd.h"
+#include "render/raster/visible_points.h"
 
 namespace bodyloom {
 namespace {

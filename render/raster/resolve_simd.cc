@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/resolve_simd.h"
+#include "render/raster/resolve_simd.h"
 
 #include <cmath>
 
-#include "bodyloom/render/raster/raster_simd.h"
+#include "render/raster/raster_simd.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bodyloom/render/raster/resolve_simd.cc"
+#define HWY_TARGET_INCLUDE "render/raster/resolve_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>

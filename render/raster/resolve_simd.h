@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include "bodyloom/render/raster/raster_simd.h"
+#include "render/raster/raster_simd.h"
 
 namespace bodyloom::resolve_internal {
 

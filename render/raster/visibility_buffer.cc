@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "render/raster/visibility_buffer.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 #include <memory>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/raster/near_clip.h"
-#include "bodyloom/render/raster/raster_simd.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/raster/near_clip.h"
+#include "render/raster/raster_simd.h"
 
 namespace bodyloom {
 namespace {

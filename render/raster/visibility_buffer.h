@@ -23,10 +23,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/image/pixel_box.h"
-#include "bodyloom/render/raster/raster_simd.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "render/image/pixel_box.h"
+#include "render/raster/raster_simd.h"
 
 namespace bodyloom {
 

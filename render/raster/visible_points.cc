@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/visible_points.h"
+#include "render/raster/visible_points.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -12,9 +12,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

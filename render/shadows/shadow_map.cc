@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/shadows/shadow_map.h"
+#include "render/shadows/shadow_map.h"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/direction_bins.h"
+#include "geometry/base/check.h"
+#include "geometry/math/direction_bins.h"
 
 namespace bodyloom {
 namespace {

@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -3,7 +3,7 @@
 /// the screen, and the layout of the derivatives by them.
 #pragma once
 
-#include "bodyloom/render/splat/float_columns.h"
+#include "render/splat/float_columns.h"
 
 namespace bodyloom {
 

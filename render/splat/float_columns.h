@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/splat/project_gaussians.h"
+#include "render/splat/project_gaussians.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/splat/project_simd.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/splat/project_simd.h"
 
 namespace bodyloom {
 namespace {

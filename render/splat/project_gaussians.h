@@ -14,8 +14,8 @@
 
 #include <string>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/splat/camera_gaussians.h"
+#include "geometry/scene/camera.h"
+#include "render/splat/camera_gaussians.h"
 
 namespace bodyloom {
 

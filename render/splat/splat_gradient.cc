@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/splat/splat_gradient.h"
+#include "render/splat/splat_gradient.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/splat/splat_simd.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/splat/splat_simd.h"
 
 namespace bodyloom {
 namespace {

@@ -16,9 +16,9 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/render/splat/float_columns.h"
-#include "bodyloom/render/splat/splat_picture.h"
+#include "geometry/math/arrays.h"
+#include "render/splat/float_columns.h"
+#include "render/splat/splat_picture.h"
 
 namespace bodyloom {
 

@@ -17,10 +17,10 @@
 #include <span>
 #include <string>
 
-#include "bodyloom/render/image/pixel_box.h"
-#include "bodyloom/render/splat/camera_gaussians.h"
-#include "bodyloom/render/splat/float_columns.h"
-#include "bodyloom/render/splat/splat_tiles.h"
+#include "render/image/pixel_box.h"
+#include "render/splat/camera_gaussians.h"
+#include "render/splat/float_columns.h"
+#include "render/splat/splat_tiles.h"
 
 namespace bodyloom {
 

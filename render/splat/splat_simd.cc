@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/splat/splat_simd.h"
+#include "render/splat/splat_simd.h"
 
 #include <algorithm>
 #include <bit>
 
-#include "bodyloom/render/splat/camera_gaussians.h"
+#include "render/splat/camera_gaussians.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bodyloom/render/splat/splat_simd.cc"
+#define HWY_TARGET_INCLUDE "render/splat/splat_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include "bodyloom/geometry/math/quad-inl.h"
-#include "bodyloom/render/splat/float_math-inl.h"
+#include "geometry/math/quad-inl.h"
+#include "render/splat/float_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bodyloom::splat_internal::HWY_NAMESPACE {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/splat/splat_tiles.h"
+#include "render/splat/splat_tiles.h"
 
 #include <algorithm>
 #include <array>

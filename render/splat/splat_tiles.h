@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/render/image/pixel_box.h"
-#include "bodyloom/render/splat/camera_gaussians.h"
-#include "bodyloom/render/splat/splat_simd.h"
+#include "render/image/pixel_box.h"
+#include "render/splat/camera_gaussians.h"
+#include "render/splat/splat_simd.h"
 
 namespace bodyloom {
 

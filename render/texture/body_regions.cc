@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/body_regions.h"
+#include "render/texture/body_regions.h"
 
 #include <array>
 
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/body/skinning.h"
 
 namespace bodyloom {
 namespace {

@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

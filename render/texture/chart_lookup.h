@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

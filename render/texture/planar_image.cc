@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/planar_image.h"
+#include "render/texture/planar_image.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/scene/camera.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/texture/texel_sight.h"
+#include "geometry/body/body_model.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/image/image.h"
+#include "render/texture/texel_sight.h"
 
 namespace bodyloom {
 

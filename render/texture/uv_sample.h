@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/uv_maps/uv_charts.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/raster/visible_points.h"
+#include "geometry/body/body_model.h"
+#include "geometry/uv_maps/uv_charts.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/raster/visible_points.h"
 
 namespace bodyloom {
 

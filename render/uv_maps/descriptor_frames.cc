@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/uv_maps/descriptor_frames.h"
+#include "render/uv_maps/descriptor_frames.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/uv_maps/descriptor_maps.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/uv_maps/descriptor_maps.h"
 
 namespace bodyloom {
 

@@ -19,10 +19,10 @@
 #include <span>
 #include <string>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "geometry/uv_maps/descriptor_options.h"
+#include "geometry/uv_maps/uv_texels.h"
 
 namespace bodyloom {
 

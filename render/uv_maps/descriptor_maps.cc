@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/uv_maps/descriptor_maps.h"
+#include "render/uv_maps/descriptor_maps.h"
 
 #include <algorithm>
 #include <cstring>
@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/geometry/uv_maps/uv_bake_simd.h"
-#include "bodyloom/render/texture/texel_sight.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/scene/camera_path.h"
+#include "geometry/uv_maps/uv_bake_simd.h"
+#include "render/texture/texel_sight.h"
 
 namespace bodyloom::describe_internal {
 

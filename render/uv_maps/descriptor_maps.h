@@ -8,13 +8,13 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/uv_maps/descriptor_options.h"
-#include "bodyloom/geometry/uv_maps/surface_maps.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/track.h"
+#include "geometry/uv_maps/descriptor_options.h"
+#include "geometry/uv_maps/surface_maps.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom::describe_internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/uv_maps/live_descriptors.h"
+#include "render/uv_maps/live_descriptors.h"
 
 #include <algorithm>
 #include <array>
@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/uv_maps/surface_maps.h"
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
-#include "bodyloom/render/uv_maps/descriptor_frames.h"
+#include "geometry/base/check.h"
+#include "geometry/body/skinning.h"
+#include "geometry/uv_maps/surface_maps.h"
+#include "geometry/uv_maps/surface_velocity.h"
+#include "render/uv_maps/descriptor_frames.h"
 
 namespace bodyloom {
 

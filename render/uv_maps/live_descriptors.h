@@ -10,10 +10,10 @@
 #include <span>
 #include <string>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/normals.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/uv_maps/uv_texels.h"
 
 namespace bodyloom {
 

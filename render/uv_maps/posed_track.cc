@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "render/uv_maps/posed_track.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/posed_body.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 

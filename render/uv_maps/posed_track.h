@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/view/person_window.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/skinning.h"
+#include "geometry/scene/track.h"
+#include "render/view/person_window.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/attribute_picture.h"
+#include "render/view/attribute_picture.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/view/error_colours.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/image/palette.h"
+#include "render/view/error_colours.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 namespace {

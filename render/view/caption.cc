@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/caption.h"
+#include "render/view/caption.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "bodyloom/render/image/image_mat.h"
-#include "bodyloom/render/image/palette.h"
+#include "render/image/image_mat.h"
+#include "render/image/palette.h"
 
 namespace bodyloom {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

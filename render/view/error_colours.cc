@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/error_colours.h"
+#include "render/view/error_colours.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/view/caption.h"
+#include "render/image/image.h"
+#include "render/image/palette.h"
+#include "render/view/caption.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/floor.h"
+#include "render/view/floor.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,11 +8,11 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/image_mat.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "geometry/base/check.h"
+#include "render/image/image.h"
+#include "render/image/image_mat.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 namespace {

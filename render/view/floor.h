@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/geometry/scene/world_frame.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/track.h"
+#include "geometry/scene/world_frame.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

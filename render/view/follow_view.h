@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/overlay.h"
+#include "render/view/overlay.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/render/view/overlay_landmarks.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/camera_path.h"
+#include "render/view/overlay_landmarks.h"
 
 namespace bodyloom {
 namespace {

@@ -8,17 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/view/caption.h"
-#include "bodyloom/render/view/floor.h"
-#include "bodyloom/render/view/follow_view.h"
-#include "bodyloom/render/view/shaded_mesh.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
+#include "render/image/image.h"
+#include "render/view/caption.h"
+#include "render/view/floor.h"
+#include "render/view/follow_view.h"
+#include "render/view/shaded_mesh.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/overlay_landmarks.h"
+#include "render/view/overlay_landmarks.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image_mat.h"
-#include "bodyloom/render/image/palette.h"
+#include "geometry/base/check.h"
+#include "render/image/image_mat.h"
+#include "render/image/palette.h"
 
 namespace bodyloom {
 namespace {

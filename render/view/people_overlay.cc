@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/people_overlay.h"
+#include "render/view/people_overlay.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/view/caption.h"
-#include "bodyloom/render/view/overlay_landmarks.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/camera_path.h"
+#include "render/image/palette.h"
+#include "render/view/caption.h"
+#include "render/view/overlay_landmarks.h"
 
 namespace bodyloom {
 namespace {

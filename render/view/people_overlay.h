@@ -6,13 +6,13 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/view/floor.h"
-#include "bodyloom/render/view/overlay.h"
-#include "bodyloom/render/view/shaded_mesh.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
+#include "render/image/image.h"
+#include "render/view/floor.h"
+#include "render/view/overlay.h"
+#include "render/view/shaded_mesh.h"
 
 namespace bodyloom {
 

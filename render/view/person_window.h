@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/scene/camera.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

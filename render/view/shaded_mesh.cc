@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/shaded_mesh.h"
+#include "render/view/shaded_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,12 +8,12 @@
 #include <limits>
 #include <optional>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/raster/raster_simd.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/view/shade_simd.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/raster/raster_simd.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/view/shade_simd.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/body/normals.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "render/image/image.h"
+#include "render/image/palette.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

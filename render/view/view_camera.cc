@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/view_camera.h"
+#include "render/view/view_camera.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

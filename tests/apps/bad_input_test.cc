@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/formats/npz.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/pipelines/batch/manifest.h"
+#include "data_tools/formats/atomic_file.h"
+#include "pipelines/batch/manifest.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"

@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/mesh/mesh_check.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/mesh/mesh_check.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"

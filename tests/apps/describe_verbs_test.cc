@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/video/image_file.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/video/image_file.h"
 #include "tests/data_tools/detection/small_onnx.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_writer.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_writer.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/bvh_writer.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/bvh_writer.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
 #include "tests/support/odd_pictures.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/learned/parser_weights_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/learned/parser_weights_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/support/paths.h"
 #include "tests/support/random_picture_unet.h"
 #include "tests/support/real_video.h"

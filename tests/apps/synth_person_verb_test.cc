@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/datasets/multi_person_dataset.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/video/image_file.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"

@@ -11,13 +11,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/render/raster/visible_points.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/video/image_file.h"
+#include "render/raster/visible_points.h"
+#include "render/view/overlay.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

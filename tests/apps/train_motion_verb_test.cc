@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/track_edits.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/track_edits.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"

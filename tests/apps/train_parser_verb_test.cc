@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "bodyloom/data_tools/learned/parser_weights_io.h"
+#include "data_tools/learned/parser_weights_io.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

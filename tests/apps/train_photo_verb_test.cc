@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/weights_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/weights_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 

@@ -9,10 +9,10 @@
 #include "benchmarks/work_precision/autodiff_peer.h"
 #include "benchmarks/work_precision/measure.h"
 #include "benchmarks/work_precision/work_problem.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/base/check.h"
 #include "tests/support/paths.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom::peer_test {
 namespace {

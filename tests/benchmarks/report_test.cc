@@ -9,7 +9,7 @@
 
 #include "benchmarks/report/compare_reports.h"
 #include "benchmarks/report/render_report.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "data_tools/formats/atomic_file.h"
 
 namespace bodyloom::report_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/printable.h"
 
 namespace bodyloom::fuzz {
 

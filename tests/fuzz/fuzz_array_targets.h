@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/avatar/avatar_file.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/estimates/hmr_readers.h"
-#include "bodyloom/data_tools/estimates/load_estimate.h"
-#include "bodyloom/data_tools/formats/zip.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/parser_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
+#include "data_tools/avatar/avatar_file.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/estimates/hmr_readers.h"
+#include "data_tools/estimates/load_estimate.h"
+#include "data_tools/formats/zip.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/parser_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/observations/part_labels.h"
 #include "tests/fuzz/fuzz_targets.h"
 
 namespace bodyloom::fuzz {

@@ -9,13 +9,13 @@
 #include <fstream>
 #include <string>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/motion/motion_split.h"
-#include "bodyloom/data_tools/observations/densepose_iuv.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_frame_times.h"
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/motion/motion_split.h"
+#include "data_tools/observations/densepose_iuv.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_frame_times.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/fuzz/fuzz_accepts.h"
 #include "tests/support/toy_body.h"
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/onnx_network.h"
-#include "bodyloom/tracking/detection/inference/tflite_network.h"
-#include "bodyloom/tracking/detection/keypoint_model.h"
 #include "tests/fuzz/fuzz_accepts.h"
+#include "tracking/detection/inference/onnx_network.h"
+#include "tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/keypoint_model.h"
 
 namespace bodyloom::fuzz {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/pipelines/animate/relight_frames.h"
-#include "bodyloom/pipelines/batch/batch_clip.h"
-#include "bodyloom/pipelines/batch/manifest.h"
-#include "bodyloom/pipelines/runs/motion_run.h"
-#include "bodyloom/pipelines/runs/run_config.h"
+#include "pipelines/animate/relight_frames.h"
+#include "pipelines/batch/batch_clip.h"
+#include "pipelines/batch/manifest.h"
+#include "pipelines/runs/motion_run.h"
+#include "pipelines/runs/run_config.h"
 #include "tests/fuzz/fuzz_file_targets.h"
 
 namespace bodyloom::fuzz {

@@ -13,13 +13,13 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/data_tools/body/body_compact.h"
-#include "bodyloom/data_tools/body/body_smpl.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/obj.h"
-#include "bodyloom/data_tools/formats/pickle.h"
-#include "bodyloom/data_tools/formats/weights_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
+#include "data_tools/body/body_compact.h"
+#include "data_tools/body/body_smpl.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/obj.h"
+#include "data_tools/formats/pickle.h"
+#include "data_tools/formats/weights_file.h"
+#include "data_tools/motion/track_io.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {

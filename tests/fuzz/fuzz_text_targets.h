@@ -8,17 +8,17 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "bodyloom/data_tools/body_making/cage.h"
-#include "bodyloom/data_tools/motion/asf_amc_reader.h"
-#include "bodyloom/data_tools/motion/bvh_reader.h"
-#include "bodyloom/data_tools/motion/deepmimic_reader.h"
-#include "bodyloom/data_tools/observations/blazepose_reader.h"
-#include "bodyloom/data_tools/observations/coco_reader.h"
-#include "bodyloom/data_tools/observations/colmap_reader.h"
-#include "bodyloom/data_tools/observations/load_camera_path.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/data_tools/observations/mmpose_reader.h"
-#include "bodyloom/data_tools/observations/openpose_reader.h"
+#include "data_tools/body_making/cage.h"
+#include "data_tools/motion/asf_amc_reader.h"
+#include "data_tools/motion/bvh_reader.h"
+#include "data_tools/motion/deepmimic_reader.h"
+#include "data_tools/observations/blazepose_reader.h"
+#include "data_tools/observations/coco_reader.h"
+#include "data_tools/observations/colmap_reader.h"
+#include "data_tools/observations/load_camera_path.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/observations/mmpose_reader.h"
+#include "data_tools/observations/openpose_reader.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {

@@ -4,7 +4,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "data_tools/formats/atomic_file.h"
 #include "tests/data_tools/fuzz/fuzz_seeds.h"
 
 int main(int argc, char** argv) {

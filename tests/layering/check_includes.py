@@ -164,17 +164,20 @@ class Tree:
         if header.startswith("."):
             self.fault(f"{place}: includes \"{header}\", expected a path from the project root")
             return
-        library = header.startswith("bodyloom/")
-        target = header[len("bodyloom/"):] if library else header
+        prefixed = header.startswith("bodyloom/")
+        target = header[len("bodyloom/"):] if prefixed else header
+        for_users = name.startswith(("examples/", "tests/consumer/"))
+        if target == "bodyloom.h":
+            if not for_users:
+                self.fault(f"{place}: includes \"{header}\", which is for users' programs")
+            return
         other = room_of(target)
         if other is None:
-            if header == "bodyloom/bodyloom.h" and room != "examples":
-                self.fault(f"{place}: includes \"{header}\", which is for users' programs")
             if "/" not in header and (self.root / pathlib.Path(name).parent / header).exists():
                 self.fault(f"{place}: includes \"{header}\", expected a path from the project root")
             return
-        if library == target.startswith(PROGRAMS):
-            expected = target if library else "bodyloom/" + target
+        if prefixed != (for_users and not target.startswith(PROGRAMS)):
+            expected = target if prefixed else "bodyloom/" + target
             self.fault(f"{place}: includes \"{header}\", expected \"{expected}\"")
         if target not in self.text:
             self.fault(f"{place}: includes \"{header}\", which is not there")

@@ -21,7 +21,7 @@ def check(files):
 
 
 def include(*headers):
-    return "".join(f'#include "bodyloom/{header}"\n' for header in headers)
+    return "".join(f'#include "{header}"\n' for header in headers)
 
 
 class CheckIncludes(unittest.TestCase):
@@ -89,14 +89,16 @@ class CheckIncludes(unittest.TestCase):
                           "pipelines/a.cc:1: pipelines/ includes")
         self.expect_allowed({"neural/motion/motion_config.h": "", "pipelines/a.cc": include("neural/motion/motion_config.h")})
 
-    def test_library_headers_have_a_prefix_and_those_of_programs_none(self):
-        self.expect_fault({"geometry/b.h": "", "geometry/a.cc": '#include "geometry/b.h"\n'},
-                          'expected "bodyloom/geometry/b.h"')
-        self.expect_fault({"tests/b.h": "", "tests/a.cc": include("tests/b.h")}, 'expected "tests/b.h"')
+    def test_only_users_programs_have_a_prefix(self):
+        self.expect_fault({"geometry/b.h": "", "geometry/a.cc": '#include "bodyloom/geometry/b.h"\n'},
+                          'expected "geometry/b.h"')
+        self.expect_fault({"geometry/b.h": "", "examples/a.cc": include("geometry/b.h")}, 'expected "bodyloom/geometry/b.h"')
+        self.expect_allowed({"geometry/b.h": "", "examples/a.cc": '#include "bodyloom/geometry/b.h"\n#include "bodyloom/bodyloom.h"\n'})
+        self.expect_fault({"geometry/a.cc": '#include "bodyloom/bodyloom.h"\n'}, "which is for users' programs")
         self.expect_fault({"tests/b.h": "", "tests/a.cc": '#include "b.h"\n'}, "expected a path from the project root")
 
     def test_missing_header(self):
-        self.expect_fault({"geometry/a.cc": include("geometry/b.h")}, 'includes "bodyloom/geometry/b.h", which is not there')
+        self.expect_fault({"geometry/a.cc": include("geometry/b.h")}, 'includes "geometry/b.h", which is not there')
 
     def test_circle_of_units(self):
         self.expect_fault({

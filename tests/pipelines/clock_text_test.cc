@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/report_text.h"
+#include "pipelines/report_text.h"
 
 #include <gtest/gtest.h>
 

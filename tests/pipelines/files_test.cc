@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/files.h"
+#include "pipelines/files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/callbacks.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom::files_test {
 namespace {

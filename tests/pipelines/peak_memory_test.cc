@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/files.h"
+#include "pipelines/files.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/raster/visible_points.h"
+#include "geometry/body/body_model.h"
+#include "render/image/image.h"
+#include "render/raster/visible_points.h"
 
 namespace bodyloom {
 

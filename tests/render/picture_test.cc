@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/image/pixel_box.h"
-#include "bodyloom/render/view/caption.h"
-#include "bodyloom/render/view/contact_sheet.h"
-#include "bodyloom/render/view/floor.h"
-#include "bodyloom/render/view/overlay_landmarks.h"
+#include "render/image/image.h"
+#include "render/image/palette.h"
+#include "render/image/pixel_box.h"
+#include "render/view/caption.h"
+#include "render/view/contact_sheet.h"
+#include "render/view/floor.h"
+#include "render/view/overlay_landmarks.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
-#include "bodyloom/render/raster/raster_simd.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "render/raster/raster_simd.h"
+#include "render/raster/visibility_buffer.h"
 #include "tests/support/raster_twin.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"

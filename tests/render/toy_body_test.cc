@@ -10,8 +10,8 @@
 #include <set>
 #include <utility>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom::toy_body_test {
 namespace {

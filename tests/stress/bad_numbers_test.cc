@@ -4,7 +4,7 @@
 #include <functional>
 #include <limits>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 #include "tests/stress/stress_support.h"
 
 namespace bodyloom::stress::bad_numbers_test {

@@ -2,7 +2,7 @@
 /// The toy body (tests/support/toy_body.h) with as many vertices as requested: the same person, finer or coarser.
 #pragma once
 
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom::stress {
 

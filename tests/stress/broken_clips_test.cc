@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
 #include "tests/stress/stress_support.h"
 
 namespace bodyloom::stress::broken_clips_test {

@@ -5,7 +5,7 @@
 #include <map>
 #include <random>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 #include "tests/stress/stress_support.h"
 
 namespace bodyloom::stress::degenerate_frames_test {

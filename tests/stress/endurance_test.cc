@@ -3,7 +3,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_body.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/load_motion.h"
 #include "tests/stress/stress_support.h"
 #include "tests/support/paths.h"
 

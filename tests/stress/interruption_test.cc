@@ -18,7 +18,7 @@
 #include <set>
 #include <thread>
 
-#include "bodyloom/data_tools/motion/track_io.h"
+#include "data_tools/motion/track_io.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"

@@ -7,12 +7,12 @@
 #include <set>
 #include <string>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
+#include "geometry/math/rotation.h"
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_poses.h"
 

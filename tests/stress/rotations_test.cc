@@ -2,9 +2,9 @@
 // Rotations at and beyond half a turn, and starts that are far off.
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "geometry/math/rotation.h"
 #include "tests/stress/stress_support.h"
 
 namespace bodyloom::stress::rotations_test {

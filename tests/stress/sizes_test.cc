@@ -2,7 +2,7 @@
 // Images, bodies and units of unusual size.
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 #include "tests/stress/bodies_of_any_size.h"
 #include "tests/stress/stress_support.h"
 #include "tests/support/toy_body.h"

@@ -9,11 +9,11 @@
 #include <fstream>
 #include <numeric>
 
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "geometry/math/rotation.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)

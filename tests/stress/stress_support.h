@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/body/body_model.h"
+#include "tracking/clip/clip_fit.h"
 
 namespace bodyloom::stress {
 

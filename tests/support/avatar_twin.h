@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "render/gaussian_avatar/avatar_frame.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 #include "tests/support/splat_twin.h"
 
 namespace bodyloom {

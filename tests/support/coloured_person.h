@@ -2,8 +2,8 @@
 /// A person as one made from photos, of whom everything is known.
 #pragma once
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/render/photo_avatar/photo_person.h"
+#include "data_tools/body/builtin_body.h"
+#include "render/photo_avatar/photo_person.h"
 
 namespace bodyloom {
 

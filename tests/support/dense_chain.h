@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
+#include "geometry/math/arrays.h"
+#include "tracking/solvers/chain/chain_problem.h"
 
 namespace bodyloom {
 

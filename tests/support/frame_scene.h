@@ -11,10 +11,10 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/problem/frame_cost.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/observations.h"
 #include "tests/support/toy_body.h"
+#include "tracking/problem/frame_cost.h"
 
 namespace bodyloom {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/image_mat.h"
+#include "render/image/image.h"
+#include "render/image/image_mat.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/render/image/parser_weights.h"
+#include "render/image/parser_weights.h"
 
 namespace bodyloom {
 

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
 
 namespace bodyloom {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "bodyloom/tracking/detection/model_files.h"
+#include "tracking/detection/model_files.h"
 
 namespace bodyloom {
 

@@ -8,16 +8,16 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/initialiser.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
-#include "bodyloom/tracking/terms/landmarks.h"
-#include "bodyloom/tracking/terms/straight_knees.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/frame_scene.h"
 #include "tests/support/toy_body.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/initialiser.h"
+#include "tracking/terms/joint_limits.h"
+#include "tracking/terms/landmarks.h"
+#include "tracking/terms/straight_knees.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom {
 

@@ -2,9 +2,9 @@
 /// A track of the built-in body without detections or noise.
 #pragma once
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
 
 namespace bodyloom {
 

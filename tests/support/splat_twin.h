@@ -11,9 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/image/pixel_box.h"
-#include "bodyloom/render/splat/camera_gaussians.h"
+#include "geometry/scene/camera.h"
+#include "render/image/pixel_box.h"
+#include "render/splat/camera_gaussians.h"
 
 namespace bodyloom {
 

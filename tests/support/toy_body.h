@@ -21,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 namespace toy_body_internal {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera.h"
 
 namespace bodyloom {
 

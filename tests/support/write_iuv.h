@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <string>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/track.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

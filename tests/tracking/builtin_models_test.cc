@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/builtin_models.h"
+#include "tracking/builtin_models.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "tracking/lifter/lift_keypoints.h"
 
 namespace bodyloom::builtin_models_test {
 namespace {

@@ -6,20 +6,20 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/clip/initialiser_gain.h"
-#include "bodyloom/tracking/lifter/given_landmarks.h"
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/live/track_live.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/clip/initialiser_gain.h"
+#include "tracking/lifter/given_landmarks.h"
+#include "tracking/lifter/lift_keypoints.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/live/track_live.h"
 
 namespace bodyloom::initialiser_test {
 namespace {

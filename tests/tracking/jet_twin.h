@@ -8,10 +8,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/tracking/problem/frame_cost.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera.h"
+#include "tracking/problem/frame_cost.h"
 
 namespace bodyloom::twin {
 

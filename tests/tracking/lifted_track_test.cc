@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "tracking/clip/clip_fit.h"
 
 namespace bodyloom::lifted_track_test {
 namespace {

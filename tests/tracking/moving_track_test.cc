@@ -3,17 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/evaluation/world_drift.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/live/track_live.h"
-#include "bodyloom/tracking/people/track_people.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/world_drift.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/scene/camera_path.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/live/track_live.h"
+#include "tracking/people/track_people.h"
 
 namespace bodyloom::moving_track_test {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tracker end to end on synthetic clips with known truth.
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "tracking/clip/clip_fit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/metrics.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/metrics.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
 
 namespace bodyloom::track_sequence_test {
 namespace {

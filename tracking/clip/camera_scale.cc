@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/camera_scale.h"
+#include "tracking/clip/camera_scale.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/problem/robust.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/camera_path.h"
+#include "tracking/problem/robust.h"
 
 namespace bodyloom {
 namespace {

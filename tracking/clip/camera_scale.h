@@ -24,8 +24,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/tracking/initialise/ground_plane.h"
+#include "geometry/scene/camera.h"
+#include "tracking/initialise/ground_plane.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "tracking/clip/clip_fit.h"
 
 #include <algorithm>
 #include <array>
@@ -9,28 +9,28 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/clip/camera_scale.h"
-#include "bodyloom/tracking/clip/term_kinds.h"
-#include "bodyloom/tracking/clip/track_plan.h"
-#include "bodyloom/tracking/clip/track_result.h"
-#include "bodyloom/tracking/clip/uncertainty.h"
-#include "bodyloom/tracking/initialise/ground_plane.h"
-#include "bodyloom/tracking/initialise/impossible_frames.h"
-#include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/initialise/swap_repair.h"
-#include "bodyloom/tracking/problem/input_checks.h"
-#include "bodyloom/tracking/problem/moving_camera.h"
-#include "bodyloom/tracking/problem/stature.h"
-#include "bodyloom/tracking/room/shared_scene.h"
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
-#include "bodyloom/tracking/solvers/term_costs.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/observability.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
+#include "tracking/clip/camera_scale.h"
+#include "tracking/clip/term_kinds.h"
+#include "tracking/clip/track_plan.h"
+#include "tracking/clip/track_result.h"
+#include "tracking/clip/uncertainty.h"
+#include "tracking/initialise/ground_plane.h"
+#include "tracking/initialise/impossible_frames.h"
+#include "tracking/initialise/initial_states.h"
+#include "tracking/initialise/swap_repair.h"
+#include "tracking/problem/input_checks.h"
+#include "tracking/problem/moving_camera.h"
+#include "tracking/problem/stature.h"
+#include "tracking/room/shared_scene.h"
+#include "tracking/solvers/chain/chain_problem.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/solvers/term_costs.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/observability.h"
 
 namespace bodyloom {
 namespace {

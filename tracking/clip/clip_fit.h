@@ -7,16 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/tracking/clip/track_stages.h"
-#include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/terms/landmarks.h"
+#include "geometry/base/stopwatch.h"
+#include "tracking/clip/track_stages.h"
+#include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/terms/landmarks.h"
 
 namespace bodyloom {
 

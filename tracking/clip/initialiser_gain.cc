@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/initialiser_gain.h"
+#include "tracking/clip/initialiser_gain.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/terms/landmarks.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/terms/landmarks.h"
 
 namespace bodyloom {
 namespace {

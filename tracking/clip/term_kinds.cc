@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/term_kinds.h"
+#include "tracking/clip/term_kinds.h"
 
 #include <utility>
 
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/problem/user_cost.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/ground_contact/clip_ground.h"
-#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
-#include "bodyloom/tracking/terms/initialiser.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
-#include "bodyloom/tracking/terms/landmarks.h"
-#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
-#include "bodyloom/tracking/terms/part_labels/part_labels.h"
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
-#include "bodyloom/tracking/terms/straight_knees.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/problem/user_cost.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/ground_contact/clip_ground.h"
+#include "tracking/terms/ground_contact/ground_contact.h"
+#include "tracking/terms/initialiser.h"
+#include "tracking/terms/joint_limits.h"
+#include "tracking/terms/landmarks.h"
+#include "tracking/terms/lifted/lifted_pose.h"
+#include "tracking/terms/part_labels/part_labels.h"
+#include "tracking/terms/pose_prior/pose_prior.h"
+#include "tracking/terms/rendered_uv/rendered_uv.h"
+#include "tracking/terms/straight_knees.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom {
 

@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/tracking/problem/clip_term.h"
+#include "tracking/problem/clip_term.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/track_plan.h"
+#include "tracking/clip/track_plan.h"
 
 #include <string>
 #include <utility>
 
-#include "bodyloom/tracking/clip/term_kinds.h"
-#include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/terms/observability.h"
+#include "tracking/clip/term_kinds.h"
+#include "tracking/initialise/initial_states.h"
+#include "tracking/terms/observability.h"
 
 namespace bodyloom {
 

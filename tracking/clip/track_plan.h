@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/track_result.h"
+#include "tracking/clip/track_result.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
 
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/problem/frame_cost.h"
-#include "bodyloom/tracking/problem/moving_camera.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/part_labels/part_label_term.h"
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
+#include "geometry/base/percentile.h"
+#include "geometry/body/posed_body.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/problem/frame_cost.h"
+#include "tracking/problem/moving_camera.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/part_labels/part_label_term.h"
+#include "tracking/terms/rendered_uv/rendered_uv_term.h"
 
 namespace bodyloom {
 

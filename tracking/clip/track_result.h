@@ -2,11 +2,11 @@
 /// The track and the summary from the solved problem.
 #pragma once
 
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/terms/observability.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/terms/observability.h"
 
 namespace bodyloom {
 

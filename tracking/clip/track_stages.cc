@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/track_stages.h"
+#include "tracking/clip/track_stages.h"
 
 #include <cmath>
 
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
+#include "tracking/solvers/chain/chain_problem.h"
+#include "tracking/solvers/solve_sequence.h"
 
 namespace bodyloom {
 

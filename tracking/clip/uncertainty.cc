@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/uncertainty.h"
+#include "tracking/clip/uncertainty.h"
 
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/solvers/chain/chain_inverse.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/solvers/chain/chain_inverse.h"
 
 namespace bodyloom {
 namespace {

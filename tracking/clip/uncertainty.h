@@ -17,10 +17,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/track.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/terms/lifted/lifted_pose.h"
 
 namespace bodyloom {
 

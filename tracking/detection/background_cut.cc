@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/background_cut.h"
+#include "tracking/detection/background_cut.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 // after imgproc, which it needs
 #include <opencv2/imgproc/detail/gcgraph.hpp>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/render/image/image_mat.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {

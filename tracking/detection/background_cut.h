@@ -23,9 +23,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/scene/label_image.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/tracking/detection/still_background.h"
+#include "geometry/scene/label_image.h"
+#include "render/image/image.h"
+#include "tracking/detection/still_background.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/clothes_parser.h"
+#include "tracking/detection/clothes_parser.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/person_label.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/view/overlay.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/person_label.h"
+#include "render/image/palette.h"
+#include "render/view/overlay.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 namespace {

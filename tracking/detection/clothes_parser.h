@@ -7,17 +7,17 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/image/parser_weights.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/person_layers.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/tracking/detection/inference/picture_unet_runner.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/normals.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/track.h"
+#include "render/image/image.h"
+#include "render/image/parser_weights.h"
+#include "render/image/person_layers.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/raster/visibility_buffer.h"
+#include "tracking/detection/inference/picture_unet_runner.h"
 
 namespace bodyloom {
 

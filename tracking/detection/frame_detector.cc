@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/frame_detector.h"
+#include "tracking/detection/frame_detector.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/tracking/detection/keypoint_model.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/stopwatch.h"
+#include "tracking/detection/keypoint_model.h"
 
 namespace bodyloom {
 namespace {

@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/people.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/tracking/detection/people_detector.h"
-#include "bodyloom/tracking/detection/pose_landmarks.h"
+#include "data_tools/observations/people.h"
+#include "geometry/scene/observations.h"
+#include "render/image/image.h"
+#include "tracking/detection/people_detector.h"
+#include "tracking/detection/pose_landmarks.h"
 
 namespace bodyloom {
 

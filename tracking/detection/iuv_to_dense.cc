@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/iuv_to_dense.h"
+#include "tracking/detection/iuv_to_dense.h"
 
 #include <algorithm>
 #include <array>
@@ -9,11 +9,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/observations/frame_numbers.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/observations_npz.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/densepose_iuv.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/label_image.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/texture/chart_lookup.h"
+#include "data_tools/observations/densepose_iuv.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/label_image.h"
+#include "geometry/scene/observations.h"
+#include "render/texture/chart_lookup.h"
 
 namespace bodyloom {
 

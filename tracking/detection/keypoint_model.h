@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/tracking/detection/inference/onnx_network.h"
-#include "bodyloom/tracking/detection/picture_crop.h"
+#include "data_tools/observations/keypoint_conventions.h"
+#include "geometry/scene/observations.h"
+#include "render/image/image.h"
+#include "tracking/detection/inference/onnx_network.h"
+#include "tracking/detection/picture_crop.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/model_files.h"
+#include "tracking/detection/model_files.h"
 
 #include <cstdlib>
 #include <filesystem>

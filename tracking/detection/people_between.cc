@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/people_between.h"
+#include "tracking/detection/people_between.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/observations/people.h"
+#include "data_tools/observations/people.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/people_detector.h"
+#include "tracking/detection/people_detector.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/stopwatch.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/stopwatch.h"
 
 namespace bodyloom {
 namespace {

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/tracking/detection/pose_detector.h"
+#include "render/image/image.h"
+#include "tracking/detection/pose_detector.h"
 
 namespace bodyloom {
 

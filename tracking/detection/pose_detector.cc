@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/pose_detector.h"
+#include "tracking/detection/pose_detector.h"
 
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/detection/inference/tflite_network.h"
-#include "bodyloom/tracking/detection/model_files.h"
-#include "bodyloom/tracking/detection/person_detection.h"
+#include "geometry/base/check.h"
+#include "tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/model_files.h"
+#include "tracking/detection/person_detection.h"
 
 namespace bodyloom {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/tracking/detection/pose_landmarks.h"
-#include "bodyloom/tracking/detection/pose_region.h"
+#include "render/image/image.h"
+#include "tracking/detection/pose_landmarks.h"
+#include "tracking/detection/pose_region.h"
 
 namespace bodyloom {
 

@@ -18,8 +18,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/detection/pose_region.h"
+#include "geometry/scene/observations.h"
+#include "tracking/detection/pose_region.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/pose_region.h"
+#include "tracking/detection/pose_region.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/image/image_mat.h"
+#include "geometry/base/check.h"
+#include "render/image/image_mat.h"
 
 namespace bodyloom {
 namespace {

@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/still_background.h"
+#include "tracking/detection/still_background.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
 
 namespace bodyloom {
 namespace {

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

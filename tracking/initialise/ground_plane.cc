@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/ground_plane.h"
+#include "tracking/initialise/ground_plane.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -8,11 +8,11 @@
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/problem/robust.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/camera_path.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/problem/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/lifter/lifter_reading.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "geometry/scene/observations.h"
+#include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/lifter/lifter_reading.h"
+#include "tracking/problem/sequence_problem.h"
 
 namespace bodyloom {
 

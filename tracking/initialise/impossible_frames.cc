@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/impossible_frames.h"
+#include "tracking/initialise/impossible_frames.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "bodyloom/tracking/initialise/swap_repair.h"
+#include "tracking/initialise/swap_repair.h"
 
 namespace bodyloom {
 namespace {

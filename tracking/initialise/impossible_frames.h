@@ -2,7 +2,7 @@
 /// Frames in which a detector followed something else.
 #pragma once
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/initial_states.h"
+#include "tracking/initialise/initial_states.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/initialise/inverse_kinematics.h"
-#include "bodyloom/tracking/initialise/joint_hypotheses.h"
-#include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/initialise/swap_repair.h"
-#include "bodyloom/tracking/problem/input_checks.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/problem/stature.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/initialise/inverse_kinematics.h"
+#include "tracking/initialise/joint_hypotheses.h"
+#include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/initialise/swap_repair.h"
+#include "tracking/problem/input_checks.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/problem/stature.h"
 
 namespace bodyloom {
 

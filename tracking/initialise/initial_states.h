@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/inverse_kinematics.h"
+#include "tracking/initialise/inverse_kinematics.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -8,11 +8,11 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/initialise/joint_hypotheses.h"
-#include "bodyloom/tracking/initialise/joint_rays.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/initialise/joint_hypotheses.h"
+#include "tracking/initialise/joint_rays.h"
 
 namespace bodyloom {
 

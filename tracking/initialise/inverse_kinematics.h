@@ -8,12 +8,12 @@
 
 #include <Eigen/Core>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/initialise/joint_hypotheses.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/observations.h"
+#include "tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom {
 

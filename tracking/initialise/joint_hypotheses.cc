@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/joint_hypotheses.h"
+#include "tracking/initialise/joint_hypotheses.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/initialise/joint_rays.h"
-#include "bodyloom/tracking/initialise/limb_costs.h"
-#include "bodyloom/tracking/initialise/swap_repair.h"
+#include "geometry/base/check.h"
+#include "tracking/initialise/joint_rays.h"
+#include "tracking/initialise/limb_costs.h"
+#include "tracking/initialise/swap_repair.h"
 
 namespace bodyloom {
 

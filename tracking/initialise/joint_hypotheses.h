@@ -16,12 +16,12 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/pose_prior.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/pose_prior.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/joint_rays.h"
+#include "tracking/initialise/joint_rays.h"
 
 #include <algorithm>
 #include <cmath>

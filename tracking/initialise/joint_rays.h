@@ -7,10 +7,10 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/initialise/joint_hypotheses.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/observations.h"
+#include "tracking/initialise/joint_hypotheses.h"
 
 namespace bodyloom::hypotheses_internal {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/lifted_landmarks.h"
+#include "tracking/initialise/lifted_landmarks.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "geometry/body/posed_body.h"
+#include "tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 

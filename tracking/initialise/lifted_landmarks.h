@@ -5,10 +5,10 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/lifter_weights.h"
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
-#include "bodyloom/tracking/problem/body_points.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/lifter_weights.h"
+#include "tracking/lifter/lift_keypoints.h"
+#include "tracking/problem/body_points.h"
 
 namespace bodyloom {
 

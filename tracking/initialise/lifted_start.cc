@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/lifted_start.h"
+#include "tracking/initialise/lifted_start.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/initialise/inverse_kinematics.h"
-#include "bodyloom/tracking/initialise/joint_hypotheses.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/problem/robust.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/initialise/inverse_kinematics.h"
+#include "tracking/initialise/joint_hypotheses.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/problem/robust.h"
 
 namespace bodyloom {
 namespace {

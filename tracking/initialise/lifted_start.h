@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/lifter_weights.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/lifter_weights.h"
+#include "geometry/scene/observations.h"
+#include "tracking/initialise/initial_states.h"
+#include "tracking/lifter/lift_keypoints.h"
 
 namespace bodyloom {
 

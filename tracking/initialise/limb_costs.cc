@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/limb_costs.h"
+#include "tracking/initialise/limb_costs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom::hypotheses_internal {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/geometry/math/direction_bins.h"
-#include "bodyloom/geometry/scene/pose_prior.h"
-#include "bodyloom/tracking/initialise/joint_rays.h"
+#include "geometry/math/direction_bins.h"
+#include "geometry/scene/pose_prior.h"
+#include "tracking/initialise/joint_rays.h"
 
 namespace bodyloom::hypotheses_internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/swap_repair.h"
+#include "tracking/initialise/swap_repair.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/tracking/problem/robust.h"
+#include "tracking/problem/robust.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/lifter/given_landmarks.h"
+#include "tracking/lifter/given_landmarks.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "geometry/base/check.h"
+#include "tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/lifter/lifter_reading.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/observations.h"
+#include "tracking/lifter/lifter_reading.h"
 
 namespace bodyloom {
 

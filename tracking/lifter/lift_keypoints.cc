@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
+#include "tracking/lifter/lift_keypoints.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/lifter/lifter_network.h"
-#include "bodyloom/tracking/lifter/lifter_reading.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/lifter/lifter_network.h"
+#include "tracking/lifter/lifter_reading.h"
 
 namespace bodyloom {
 namespace {

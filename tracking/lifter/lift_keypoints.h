@@ -11,11 +11,11 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/lifter_weights.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/lifter/lifter_reading.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/lifter_weights.h"
+#include "geometry/scene/observations.h"
+#include "tracking/lifter/lifter_reading.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "tracking/lifter/lifter_input.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/lifter/lifter_network.h"
+#include "tracking/lifter/lifter_network.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/lifter/matrix_simd.h"
+#include "geometry/base/check.h"
+#include "tracking/lifter/matrix_simd.h"
 
 namespace bodyloom {
 namespace {

@@ -2,8 +2,8 @@
 /// Runs the lifter (geometry/scene/lifter_weights.h) with plain matrix products: about a million of them a frame.
 #pragma once
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/lifter_weights.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/lifter/lifter_reading.h"
+#include "tracking/lifter/lifter_reading.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/lifter_weights.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/lifter_weights.h"
 
 namespace bodyloom {
 

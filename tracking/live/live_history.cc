@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/live/live_history.h"
+#include "tracking/live/live_history.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/initialise/impossible_frames.h"
-#include "bodyloom/tracking/initialise/swap_repair.h"
-#include "bodyloom/tracking/problem/input_checks.h"
-#include "bodyloom/tracking/terms/observability.h"
+#include "geometry/base/check.h"
+#include "tracking/initialise/impossible_frames.h"
+#include "tracking/initialise/swap_repair.h"
+#include "tracking/problem/input_checks.h"
+#include "tracking/terms/observability.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

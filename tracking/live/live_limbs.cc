@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/live/live_limbs.h"
+#include "tracking/live/live_limbs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/tracking/initialise/joint_hypotheses.h"
-#include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
+#include "tracking/initialise/joint_hypotheses.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/solvers/solve_sequence.h"
 
 namespace bodyloom {
 namespace {

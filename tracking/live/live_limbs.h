@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "bodyloom/tracking/live/live_window.h"
-#include "bodyloom/tracking/problem/body_points.h"
+#include "tracking/live/live_window.h"
+#include "tracking/problem/body_points.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/live/live_setup.h"
+#include "tracking/live/live_setup.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/problem/input_checks.h"
-#include "bodyloom/tracking/terms/straight_knees.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "tracking/problem/input_checks.h"
+#include "tracking/terms/straight_knees.h"
 
 namespace bodyloom {
 

@@ -5,12 +5,12 @@
 #include <array>
 #include <memory>
 
-#include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/live/live_options.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
-#include "bodyloom/tracking/terms/observability.h"
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
+#include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/live/live_options.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/terms/joint_limits.h"
+#include "tracking/terms/observability.h"
+#include "tracking/terms/pose_prior/pose_prior.h"
 
 namespace bodyloom {
 

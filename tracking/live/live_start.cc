@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/live/live_start.h"
+#include "tracking/live/live_start.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/initialise/inverse_kinematics.h"
-#include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/terms/initialiser.h"
+#include "geometry/body/posed_body.h"
+#include "tracking/initialise/initial_states.h"
+#include "tracking/initialise/inverse_kinematics.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/terms/initialiser.h"
 
 namespace bodyloom {
 

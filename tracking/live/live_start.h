@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/tracking/live/live_window.h"
+#include "tracking/live/live_window.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/live/live_tracker.h"
+#include "tracking/live/live_tracker.h"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/live/live_limbs.h"
-#include "bodyloom/tracking/live/live_setup.h"
-#include "bodyloom/tracking/live/live_start.h"
-#include "bodyloom/tracking/live/live_window.h"
+#include "geometry/math/rotation.h"
+#include "tracking/live/live_limbs.h"
+#include "tracking/live/live_setup.h"
+#include "tracking/live/live_start.h"
+#include "tracking/live/live_window.h"
 
 namespace bodyloom {
 namespace {

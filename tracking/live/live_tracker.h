@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/tracking/live/live_options.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
+#include "tracking/live/live_options.h"
+#include "tracking/problem/frame_layout.h"
 
 namespace bodyloom {
 

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/live/live_window.h"
+#include "tracking/live/live_window.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "bodyloom/tracking/clip/track_result.h"
-#include "bodyloom/tracking/clip/uncertainty.h"
-#include "bodyloom/tracking/problem/input_checks.h"
-#include "bodyloom/tracking/problem/user_cost.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/initialiser.h"
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
-#include "bodyloom/tracking/terms/straight_knees.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "tracking/clip/track_result.h"
+#include "tracking/clip/uncertainty.h"
+#include "tracking/problem/input_checks.h"
+#include "tracking/problem/user_cost.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/initialiser.h"
+#include "tracking/terms/pose_prior/pose_prior.h"
+#include "tracking/terms/straight_knees.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom {
 namespace {

@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/tracking/clip/uncertainty.h"
-#include "bodyloom/tracking/live/live_history.h"
-#include "bodyloom/tracking/live/live_setup.h"
-#include "bodyloom/tracking/solvers/fixed_lag.h"
+#include "tracking/clip/uncertainty.h"
+#include "tracking/live/live_history.h"
+#include "tracking/live/live_setup.h"
+#include "tracking/solvers/fixed_lag.h"
 
 namespace bodyloom {
 

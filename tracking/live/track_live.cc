@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/live/track_live.h"
+#include "tracking/live/track_live.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/tracking/clip/track_plan.h"
-#include "bodyloom/tracking/clip/track_result.h"
-#include "bodyloom/tracking/problem/input_checks.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/observability.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/body/posed_body.h"
+#include "tracking/clip/track_plan.h"
+#include "tracking/clip/track_result.h"
+#include "tracking/problem/input_checks.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/observability.h"
 
 namespace bodyloom {
 

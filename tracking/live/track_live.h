@@ -2,9 +2,9 @@
 /// A whole clip through the live tracker, frame by frame, as if it came from a camera.
 #pragma once
 
-#include "bodyloom/tracking/live/live_tracker.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "tracking/live/live_tracker.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/people/occlusion.h"
+#include "tracking/people/occlusion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <memory>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/problem/visible_surface.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
+#include "geometry/scene/camera_path.h"
+#include "tracking/problem/visible_surface.h"
 
 namespace bodyloom {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/people/track_people.h"
+#include "tracking/people/track_people.h"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/clip/uncertainty.h"
-#include "bodyloom/tracking/problem/stature.h"
-#include "bodyloom/tracking/room/shared_scene.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/clip/uncertainty.h"
+#include "tracking/problem/stature.h"
+#include "tracking/room/shared_scene.h"
 
 namespace bodyloom {
 namespace {

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/people/occlusion.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/room/shared_scene.h"
+#include "tracking/people/occlusion.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/room/shared_scene.h"
 
 namespace bodyloom {
 

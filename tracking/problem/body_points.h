@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

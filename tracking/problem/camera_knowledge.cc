@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/camera_knowledge.h"
+#include "tracking/problem/camera_knowledge.h"
 
 #include <cmath>
 

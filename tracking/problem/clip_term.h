@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "geometry/scene/observations.h"
+#include "tracking/problem/sequence_problem.h"
 
 namespace bodyloom {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/frame_accumulator.h"
+#include "tracking/problem/frame_accumulator.h"
 
 #include <algorithm>
 
-#include "bodyloom/tracking/problem/panel_simd.h"
+#include "tracking/problem/panel_simd.h"
 
 namespace bodyloom {
 

@@ -20,12 +20,12 @@
 #include <typeindex>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/problem/robust.h"
-#include "bodyloom/tracking/problem/visible_surface.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/problem/robust.h"
+#include "tracking/problem/visible_surface.h"
 
 namespace ceres {
 class LossFunction;

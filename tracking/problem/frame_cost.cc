@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/frame_cost.h"
+#include "tracking/problem/frame_cost.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/tracking/problem/moving_camera.h"
+#include "tracking/problem/moving_camera.h"
 
 namespace bodyloom {
 

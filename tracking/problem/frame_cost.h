@@ -13,10 +13,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/problem/frame_term.h"
+#include "geometry/scene/camera.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

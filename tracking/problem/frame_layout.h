@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/tracking/problem/camera_knowledge.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "tracking/problem/camera_knowledge.h"
 
 namespace bodyloom {
 

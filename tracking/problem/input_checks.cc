@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/input_checks.h"
+#include "tracking/problem/input_checks.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/stature.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "tracking/problem/stature.h"
 
 namespace bodyloom {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "geometry/scene/observations.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/moving_camera.h"
+#include "tracking/problem/moving_camera.h"
 
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "tracking/problem/sequence_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/tracking/problem/frame_cost.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/problem/user_cost.h"
+#include "tracking/problem/frame_cost.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/problem/user_cost.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/stature.h"
+#include "tracking/problem/stature.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "tracking/problem/sequence_problem.h"
 
 namespace bodyloom {
 

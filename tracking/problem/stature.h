@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/tracking/problem/track_input.h"
+#include "geometry/body/body_model.h"
+#include "tracking/problem/track_input.h"
 
 namespace bodyloom {
 

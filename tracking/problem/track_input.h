@@ -5,14 +5,14 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/lifter_weights.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/pose_prior.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/tracking/problem/camera_knowledge.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/lifter_weights.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/pose_prior.h"
+#include "geometry/scene/track.h"
+#include "tracking/problem/camera_knowledge.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

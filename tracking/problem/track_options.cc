@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/track_options.h"
+#include "tracking/problem/track_options.h"
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

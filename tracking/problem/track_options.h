@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/problem/camera_knowledge.h"
-#include "bodyloom/tracking/problem/user_term.h"
+#include "tracking/problem/camera_knowledge.h"
+#include "tracking/problem/user_term.h"
 
 namespace bodyloom {
 

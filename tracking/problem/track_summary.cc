@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "tracking/problem/track_summary.h"
 
 #include <cstdio>
 #include <sstream>
 
-#include "bodyloom/geometry/base/percentile.h"
+#include "geometry/base/percentile.h"
 
 namespace bodyloom {
 

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/tracking/problem/camera_knowledge.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "geometry/scene/track.h"
+#include "tracking/problem/camera_knowledge.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/user_cost.h"
+#include "tracking/problem/user_cost.h"
 
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
@@ -10,13 +10,13 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/surface_jacobian.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/base/check.h"
+#include "geometry/body/surface_jacobian.h"
+#include "geometry/math/rotation.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

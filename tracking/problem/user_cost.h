@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/problem/frame_term.h"
-#include "bodyloom/tracking/problem/user_term.h"
+#include "geometry/math/arrays.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/problem/frame_term.h"
+#include "tracking/problem/user_term.h"
 
 namespace bodyloom {
 

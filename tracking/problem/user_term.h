@@ -30,7 +30,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 
 namespace ceres {
 class CostFunction;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/visible_surface.h"
+#include "tracking/problem/visible_surface.h"
 
 namespace bodyloom {
 

@@ -9,10 +9,10 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/skinning.h"
+#include "geometry/scene/camera.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/room/common_ground.h"
+#include "tracking/room/common_ground.h"
 
 #include <ceres/ceres.h>
 #include <Eigen/Geometry>
@@ -10,9 +10,9 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/initialise/ground_plane.h"
-#include "bodyloom/tracking/solvers/residuals/ceres_functions.h"
+#include "geometry/base/check.h"
+#include "tracking/initialise/ground_plane.h"
+#include "tracking/solvers/residuals/ceres_functions.h"
 
 namespace bodyloom {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/room/shared_scene.h"
+#include "tracking/room/shared_scene.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/view/floor.h"
+#include "geometry/base/check.h"
+#include "render/view/floor.h"
 
 namespace bodyloom {
 namespace {

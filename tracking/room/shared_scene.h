@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/world_frame.h"
-#include "bodyloom/tracking/problem/camera_knowledge.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/room/common_ground.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/world_frame.h"
+#include "tracking/problem/camera_knowledge.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/room/common_ground.h"
 
 namespace bodyloom {
 

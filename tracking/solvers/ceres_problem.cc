@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/ceres_problem.h"
+#include "tracking/solvers/ceres_problem.h"
 
 #include <ceres/loss_function.h>
 
@@ -10,12 +10,12 @@
 #include <tuple>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
-#include "bodyloom/tracking/solvers/residuals/ceres_functions.h"
-#include "bodyloom/tracking/solvers/residuals/coupling_cost.h"
-#include "bodyloom/tracking/solvers/residuals/frame_batch.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/solvers/residuals/ceres_functions.h"
+#include "tracking/solvers/residuals/coupling_cost.h"
+#include "tracking/solvers/residuals/frame_batch.h"
 
 namespace bodyloom {
 

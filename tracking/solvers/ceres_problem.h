@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "tracking/problem/sequence_problem.h"
 
 namespace bodyloom {
 

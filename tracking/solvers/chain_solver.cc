@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/chain_solver.h"
+#include "tracking/solvers/chain_solver.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "tracking/terms/dense/dense.h"
 
 namespace bodyloom {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/fixed_lag.h"
+#include "tracking/solvers/fixed_lag.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/solvers/chain/chain_inverse.h"
-#include "bodyloom/tracking/solvers/chain_solver.h"
+#include "geometry/base/check.h"
+#include "tracking/solvers/chain/chain_inverse.h"
+#include "tracking/solvers/chain_solver.h"
 
 namespace bodyloom {
 

@@ -9,10 +9,10 @@
 
 #include <functional>
 
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/solvers/chain/chain_factor.h"
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/solvers/chain/chain_factor.h"
+#include "tracking/solvers/chain/chain_problem.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/solve_sequence.h"
+#include "tracking/solvers/solve_sequence.h"
 
 #include <ceres/ceres.h>
 #include <omp.h>
 #include <algorithm>
 #include <memory>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/solvers/ceres_problem.h"
-#include "bodyloom/tracking/solvers/chain_solver.h"
-#include "bodyloom/tracking/solvers/term_costs.h"
+#include "geometry/base/check.h"
+#include "tracking/solvers/ceres_problem.h"
+#include "tracking/solvers/chain_solver.h"
+#include "tracking/solvers/term_costs.h"
 
 namespace bodyloom {
 

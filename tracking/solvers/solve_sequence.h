@@ -2,8 +2,8 @@
 /// Solves a SequenceProblem with the engine that the options name.
 #pragma once
 
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/problem/track_options.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/term_costs.h"
+#include "tracking/solvers/term_costs.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/frame_cost.h"
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
+#include "geometry/base/parallel.h"
+#include "geometry/math/rotation.h"
+#include "tracking/problem/frame_cost.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
 
 namespace bodyloom {
 

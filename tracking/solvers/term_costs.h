@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

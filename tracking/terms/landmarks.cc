@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/landmarks.h"
+#include "tracking/terms/landmarks.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/base/check.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

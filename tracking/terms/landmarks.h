@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/problem/frame_term.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/observations.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/observability.h"
+#include "tracking/terms/observability.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/problem/user_cost.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/problem/user_cost.h"
 
 namespace bodyloom {
 namespace {

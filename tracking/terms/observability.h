@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/tracking/problem/user_term.h"
-#include "bodyloom/tracking/terms/landmarks.h"
+#include "geometry/body/body_model.h"
+#include "tracking/problem/user_term.h"
+#include "tracking/terms/landmarks.h"
 
 namespace bodyloom {
 

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/tracking/problem/frame_term.h"
+#include "geometry/body/body_model.h"
+#include "tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/upright.h"
+#include "tracking/terms/upright.h"
 
 #include <cmath>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/math/rotation.h"
+#include "tracking/initialise/initial_states.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/problem/frame_term.h"
+#include "tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,12 +7,12 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
-#include "bodyloom/data_tools/synthesis/pose_joints.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/synthesis/clips/smooth_curve.h"
+#include "data_tools/synthesis/pose_joints.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 /// do not slide; arms, spine and head follow keyed curves. All curves are smooth to the second derivative.
 #pragma once
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

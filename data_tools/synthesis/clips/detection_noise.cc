@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/clips/detection_noise.h"
+#include "data_tools/synthesis/clips/detection_noise.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
-#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
+#include "data_tools/synthesis/clips/smooth_curve.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 namespace {

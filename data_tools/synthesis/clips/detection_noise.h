@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/clips/rendered_labels.h"
+#include "data_tools/synthesis/clips/rendered_labels.h"
 
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -2,9 +2,9 @@
 /// Part labels of a known track: what a perfect detector would predict for every pixel.
 #pragma once
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

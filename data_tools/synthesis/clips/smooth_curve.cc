@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
+#include "data_tools/synthesis/clips/smooth_curve.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
+#include "data_tools/synthesis/clips/synth_camera.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,11 +7,11 @@
 #include <limits>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "geometry/base/check.h"
+#include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/clips/synth_camera_path.h"
+#include "data_tools/synthesis/clips/synth_camera_path.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/geometry/base/units.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/synthesis/clips/smooth_curve.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "geometry/base/units.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 namespace {

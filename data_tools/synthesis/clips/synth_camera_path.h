@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/synthesis/clips/synth_camera.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

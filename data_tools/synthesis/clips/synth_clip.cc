@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/raster/visible_points.h"
-#include "bodyloom/render/texture/chart_lookup.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/camera_path.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/raster/visible_points.h"
+#include "render/texture/chart_lookup.h"
 
 namespace bodyloom {
 namespace {

@@ -20,13 +20,13 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/clips/detection_noise.h"
-#include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_camera_path.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/synthesis/clips/detection_noise.h"
+#include "data_tools/synthesis/clips/perturbed_motion.h"
+#include "data_tools/synthesis/clips/synth_camera.h"
+#include "data_tools/synthesis/clips/synth_camera_path.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

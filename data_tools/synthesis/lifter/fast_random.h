@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/base/hash_random.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 

@@ -9,8 +9,8 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/lifter/lifter_body.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
+#include "data_tools/synthesis/lifter/lifter_body.h"
+#include "data_tools/synthesis/lifter/lifter_window_options.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/lifter_body.h"
+#include "data_tools/synthesis/lifter/lifter_body.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/problem/body_points.h"
+#include "geometry/base/check.h"
+#include "tracking/problem/body_points.h"
 
 namespace bodyloom {
 

@@ -12,10 +12,10 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "data_tools/synthesis/lifter/lifter_window_options.h"
+#include "geometry/base/hash_random.h"
+#include "geometry/body/body_model.h"
+#include "tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 

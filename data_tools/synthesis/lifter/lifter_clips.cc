@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/lifter_clips.h"
+#include "data_tools/synthesis/lifter/lifter_clips.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/motion/motion_tools.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/lifter/lifter_body.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/synthesis/lifter/lifter_body.h"
+#include "data_tools/synthesis/lifter/lifter_window_options.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/lifter_detections.h"
+#include "data_tools/synthesis/lifter/lifter_detections.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/data_tools/synthesis/clips/detection_noise.h"
-#include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
+#include "data_tools/synthesis/clips/detection_noise.h"
+#include "data_tools/synthesis/lifter/fast_random.h"
 
 namespace bodyloom {
 

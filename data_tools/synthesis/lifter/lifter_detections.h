@@ -9,9 +9,9 @@
 /// detector's own idea of a confidence, points it does not have or report, and the image's border.
 #pragma once
 
-#include "bodyloom/data_tools/synthesis/lifter/lifter_scene.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
-#include "bodyloom/geometry/base/hash_random.h"
+#include "data_tools/synthesis/lifter/lifter_scene.h"
+#include "data_tools/synthesis/lifter/lifter_window_options.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 

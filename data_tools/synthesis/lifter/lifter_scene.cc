@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/lifter_scene.h"
+#include "data_tools/synthesis/lifter/lifter_scene.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
+#include "data_tools/synthesis/lifter/fast_random.h"
 
 namespace bodyloom {
 

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/lifter/lifter_body.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
+#include "data_tools/synthesis/lifter/lifter_body.h"
+#include "data_tools/synthesis/lifter/lifter_window_options.h"
 
 namespace bodyloom {
 

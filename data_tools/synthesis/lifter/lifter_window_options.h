@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/pose_joints.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "data_tools/synthesis/pose_joints.h"
+#include "tracking/lifter/lifter_input.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
+#include "data_tools/synthesis/lifter/lifter_windows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/data_tools/synthesis/lifter/lifter_detections.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/synthesis/lifter/lifter_detections.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 

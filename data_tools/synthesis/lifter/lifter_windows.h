@@ -7,13 +7,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/lifter/floor_poses.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_clips.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_scene.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
-#include "bodyloom/data_tools/synthesis/lifter/pose_augmentation.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/synthesis/lifter/floor_poses.h"
+#include "data_tools/synthesis/lifter/lifter_clips.h"
+#include "data_tools/synthesis/lifter/lifter_scene.h"
+#include "data_tools/synthesis/lifter/lifter_window_options.h"
+#include "data_tools/synthesis/lifter/pose_augmentation.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

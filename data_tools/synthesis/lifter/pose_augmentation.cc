@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/pose_augmentation.h"
+#include "data_tools/synthesis/lifter/pose_augmentation.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
+#include "data_tools/synthesis/lifter/fast_random.h"
+#include "tracking/terms/joint_limits.h"
 
 namespace bodyloom {
 

@@ -5,9 +5,9 @@
 #include <array>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/lifter/lifter_clips.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_window_options.h"
-#include "bodyloom/geometry/body/body_model.h"
+#include "data_tools/synthesis/lifter/lifter_clips.h"
+#include "data_tools/synthesis/lifter/lifter_window_options.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/clothes_details.h"
+#include "data_tools/synthesis/people/clothes_details.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
-#include "bodyloom/geometry/base/hash_random.h"
+#include "data_tools/synthesis/clips/smooth_curve.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 namespace {

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "bodyloom/data_tools/synthesis/people/outfit.h"
+#include "data_tools/synthesis/people/outfit.h"
 
 namespace bodyloom {
 

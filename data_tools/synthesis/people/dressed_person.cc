@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
+#include "data_tools/synthesis/people/dressed_person.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/hash_random.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 

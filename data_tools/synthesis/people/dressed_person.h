@@ -9,12 +9,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "bodyloom/data_tools/synthesis/people/outfit.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_body.h"
-#include "bodyloom/geometry/cloth/cloth_material.h"
-#include "bodyloom/geometry/cloth/loose_garment.h"
-#include "bodyloom/geometry/math/arrays.h"
+#include "data_tools/synthesis/people/outfit.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/cloth_body.h"
+#include "geometry/cloth/cloth_material.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/math/arrays.h"
 
 namespace bodyloom {
 

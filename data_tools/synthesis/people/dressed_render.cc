@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/dressed_render.h"
+#include "data_tools/synthesis/people/dressed_render.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/people/wardrobe.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "data_tools/synthesis/people/wardrobe.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "render/view/view_camera.h"
 
 namespace bodyloom {
 namespace {

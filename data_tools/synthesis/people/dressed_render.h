@@ -15,16 +15,16 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
-#include "bodyloom/data_tools/synthesis/people/person_light.h"
-#include "bodyloom/data_tools/synthesis/people/wardrobe.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/shadows/shadow_map.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/synthesis/people/dressed_person.h"
+#include "data_tools/synthesis/people/person_light.h"
+#include "data_tools/synthesis/people/wardrobe.h"
+#include "geometry/body/normals.h"
+#include "geometry/scene/camera.h"
+#include "render/image/image.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/shadows/shadow_map.h"
 
 namespace bodyloom {
 

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/people/outfit.h"
-#include "bodyloom/data_tools/synthesis/people/person_light.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/synthesis/people/outfit.h"
+#include "data_tools/synthesis/people/person_light.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

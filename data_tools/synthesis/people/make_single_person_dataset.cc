@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
+#include "data_tools/synthesis/people/make_single_person_dataset.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,16 +10,16 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/synthesis/people/dressed_render.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/synthesis/people/dressed_render.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/cloth/cloth_run.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 namespace {

@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
-#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
-#include "bodyloom/data_tools/synthesis/people/person_light.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/cloth/cloth_material.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/synthesis/clips/synth_camera.h"
+#include "data_tools/synthesis/people/dressed_person.h"
+#include "data_tools/synthesis/people/person_light.h"
+#include "geometry/body/body_model.h"
+#include "geometry/cloth/cloth_material.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

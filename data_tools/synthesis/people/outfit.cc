@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/outfit.h"
+#include "data_tools/synthesis/people/outfit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
-#include "bodyloom/data_tools/synthesis/pose_joints.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
+#include "data_tools/synthesis/clips/smooth_curve.h"
+#include "data_tools/synthesis/pose_joints.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 namespace {

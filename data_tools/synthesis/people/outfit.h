@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/body/body_model.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/body/body_model.h"
 
 namespace bodyloom {
 

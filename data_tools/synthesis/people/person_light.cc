@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/person_light.h"
+#include "data_tools/synthesis/people/person_light.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/hash_random.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/wardrobe.h"
+#include "data_tools/synthesis/people/wardrobe.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/hash_random.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 namespace {

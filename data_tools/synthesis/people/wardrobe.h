@@ -14,8 +14,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "bodyloom/data_tools/synthesis/people/clothes_details.h"
-#include "bodyloom/data_tools/synthesis/people/outfit.h"
+#include "data_tools/synthesis/people/clothes_details.h"
+#include "data_tools/synthesis/people/outfit.h"
 
 namespace bodyloom {
 

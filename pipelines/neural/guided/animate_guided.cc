@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/guided/animate_guided.h"
+#include "pipelines/neural/guided/animate_guided.h"
 
 #include <algorithm>
 #include <memory>
@@ -7,23 +7,23 @@
 #include <set>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/neural/guided/guided_renderer.h"
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/pipelines/animate/animation_limits.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/guided/guided_people.h"
-#include "bodyloom/pipelines/neural/guided/guided_preview.h"
-#include "bodyloom/pipelines/neural/guided/guided_scores.h"
-#include "bodyloom/pipelines/neural/photo/photo_animation.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/runs/run_config.h"
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/base/parallel.h"
+#include "neural/guided/guided_renderer.h"
+#include "neural/training/training_run.h"
+#include "pipelines/animate/animation_limits.h"
+#include "pipelines/files.h"
+#include "pipelines/neural/guided/guided_people.h"
+#include "pipelines/neural/guided/guided_preview.h"
+#include "pipelines/neural/guided/guided_scores.h"
+#include "pipelines/neural/photo/photo_animation.h"
+#include "pipelines/report_json.h"
+#include "pipelines/runs/run_config.h"
+#include "render/texture/planar_image.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

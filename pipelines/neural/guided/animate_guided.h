@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/guided_scores.h"
-#include "bodyloom/pipelines/neural/photo/photo_animation.h"
+#include "geometry/base/callbacks.h"
+#include "neural/guided/guided_config.h"
+#include "neural/guided/guided_scores.h"
+#include "pipelines/neural/photo/photo_animation.h"
 
 namespace bodyloom {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/guided/guided_people.h"
+#include "pipelines/neural/guided/guided_people.h"
 
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <string>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/descriptors/photo_maps.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/neural/guided/complete_maps.h"
-#include "bodyloom/pipelines/neural/photo/photo_input.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/multi_person_dataset.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/descriptors/photo_maps.h"
+#include "data_tools/motion/track_io.h"
+#include "neural/guided/complete_maps.h"
+#include "pipelines/neural/photo/photo_input.h"
+#include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "pipelines/neural/photo/people_data.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

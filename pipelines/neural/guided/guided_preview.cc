@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/guided/guided_preview.h"
+#include "pipelines/neural/guided/guided_preview.h"
 
 #include <algorithm>
 #include <array>
 
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "render/texture/planar_image.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

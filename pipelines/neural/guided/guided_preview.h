@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/neural/guided/train_guided.h"
-#include "bodyloom/render/image/image.h"
+#include "neural/guided/coherent_maps.h"
+#include "neural/guided/train_guided.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/guided/guided_scores.h"
+#include "pipelines/neural/guided/guided_scores.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/neural/metrics/lpips.h"
+#include "neural/metrics/lpips.h"
 
 namespace bodyloom {
 

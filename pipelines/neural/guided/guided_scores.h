@@ -5,8 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <utility>
 
-#include "bodyloom/neural/guided/guided_scores.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "neural/guided/guided_scores.h"
+#include "pipelines/neural/weights_folder.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/guided/train_guided_renderer.h"
+#include "pipelines/neural/guided/train_guided_renderer.h"
 
 #include <algorithm>
 #include <memory>
@@ -7,16 +7,16 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/photo/photo_window.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/guided/guided_people.h"
-#include "bodyloom/pipelines/neural/guided/guided_preview.h"
-#include "bodyloom/pipelines/neural/guided/guided_scores.h"
-#include "bodyloom/pipelines/neural/training_session.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/runs/run_config.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "neural/photo/photo_window.h"
+#include "pipelines/files.h"
+#include "pipelines/neural/guided/guided_people.h"
+#include "pipelines/neural/guided/guided_preview.h"
+#include "pipelines/neural/guided/guided_scores.h"
+#include "pipelines/neural/training_session.h"
+#include "pipelines/neural/weights_folder.h"
+#include "pipelines/runs/run_config.h"
 
 namespace bodyloom {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/guided/train_guided.h"
+#include "geometry/base/callbacks.h"
+#include "neural/guided/train_guided.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/lifter/train_lifter_network.h"
+#include "pipelines/neural/lifter/train_lifter_network.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,14 +7,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/motion/motion_library.h"
-#include "bodyloom/data_tools/motion/motion_split.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/neural/training_session.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/motion/motion_library.h"
+#include "data_tools/motion/motion_split.h"
+#include "data_tools/synthesis/lifter/lifter_windows.h"
+#include "geometry/base/check.h"
+#include "pipelines/neural/training_session.h"
 
 namespace bodyloom {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/lifter/train_lifter.h"
+#include "geometry/base/callbacks.h"
+#include "neural/lifter/train_lifter.h"
 
 namespace bodyloom {
 

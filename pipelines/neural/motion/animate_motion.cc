@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/motion/animate_motion.h"
+#include "pipelines/neural/motion/animate_motion.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,28 +8,28 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/evaluation/motion_retrieval.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/resample_track.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/neural/motion/motion_renderer.h"
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/pipelines/animate/background.h"
-#include "bodyloom/pipelines/animate/relight_frames.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/motion/animated_clip.h"
-#include "bodyloom/pipelines/neural/motion/clip_scores.h"
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/runs/motion_run.h"
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/evaluation/motion_retrieval.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/resample_track.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "neural/motion/motion_renderer.h"
+#include "neural/training/training_run.h"
+#include "pipelines/animate/background.h"
+#include "pipelines/animate/relight_frames.h"
+#include "pipelines/files.h"
+#include "pipelines/neural/motion/animated_clip.h"
+#include "pipelines/neural/motion/clip_scores.h"
+#include "pipelines/neural/motion/motion_data.h"
+#include "pipelines/neural/weights_folder.h"
+#include "pipelines/report_json.h"
+#include "pipelines/runs/motion_run.h"
+#include "render/texture/planar_image.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/neural/motion/clip_scores.h"
-#include "bodyloom/render/lighting/fit_lighting.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/neural/animation.h"
+#include "pipelines/neural/motion/clip_scores.h"
+#include "render/lighting/fit_lighting.h"
 
 namespace bodyloom {
 

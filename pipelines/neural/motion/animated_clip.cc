@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/motion/animated_clip.h"
+#include "pipelines/neural/motion/animated_clip.h"
 
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/motion/resample_track.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/pipelines/animate/animation_limits.h"
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/motion/resample_track.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/track_edits.h"
+#include "pipelines/animate/animation_limits.h"
+#include "pipelines/neural/motion/motion_data.h"
+#include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 namespace {

@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
-#include "bodyloom/pipelines/runs/motion_run.h"
+#include "data_tools/descriptors/person_frames.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "neural/motion/motion_frame.h"
+#include "pipelines/neural/motion/motion_data.h"
+#include "pipelines/runs/motion_run.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/motion/clip_scores.h"
+#include "pipelines/neural/motion/clip_scores.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "bodyloom/pipelines/animate/motion_errors.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
+#include "pipelines/animate/motion_errors.h"
+#include "pipelines/neural/weights_folder.h"
 
 namespace bodyloom {
 nlohmann::ordered_json ToJson(const ClipScores& scores) {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/pipelines/animate/background.h"
-#include "bodyloom/pipelines/animate/motion_errors.h"
-#include "bodyloom/pipelines/animate/person_segmentation.h"
-#include "bodyloom/render/image/image.h"
+#include "neural/motion/motion_frame.h"
+#include "pipelines/animate/background.h"
+#include "pipelines/animate/motion_errors.h"
+#include "pipelines/animate/person_segmentation.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
+#include "pipelines/neural/motion/motion_data.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,15 +8,15 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/body_truth.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/body_truth.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
+#include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
 /// The window's part of a frame's pictures.

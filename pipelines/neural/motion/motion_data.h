@@ -5,12 +5,12 @@
 #include <memory>
 #include <string>
 
-#include "bodyloom/data_tools/descriptors/dense_history.h"
-#include "bodyloom/data_tools/descriptors/estimated_pixels.h"
-#include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/neural/motion/motion_config.h"
-#include "bodyloom/neural/motion/motion_frame.h"
+#include "data_tools/descriptors/dense_history.h"
+#include "data_tools/descriptors/estimated_pixels.h"
+#include "data_tools/descriptors/person_frames.h"
+#include "geometry/scene/track.h"
+#include "neural/motion/motion_config.h"
+#include "neural/motion/motion_frame.h"
 
 namespace bodyloom {
 

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/motion/train_motion_renderer.h"
+#include "pipelines/neural/motion/train_motion_renderer.h"
 
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/describe/describe_clip.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
-#include "bodyloom/pipelines/neural/motion/training_frames.h"
-#include "bodyloom/pipelines/neural/training_session.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/runs/motion_run.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "pipelines/describe/describe_clip.h"
+#include "pipelines/files.h"
+#include "pipelines/neural/animation.h"
+#include "pipelines/neural/motion/motion_data.h"
+#include "pipelines/neural/motion/training_frames.h"
+#include "pipelines/neural/training_session.h"
+#include "pipelines/neural/weights_folder.h"
+#include "pipelines/runs/motion_run.h"
 
 namespace bodyloom {
 namespace {

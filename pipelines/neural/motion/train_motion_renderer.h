@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/motion/train_motion.h"
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
-#include "bodyloom/pipelines/neural/motion/training_frames.h"
+#include "geometry/base/callbacks.h"
+#include "neural/motion/train_motion.h"
+#include "pipelines/neural/motion/motion_data.h"
+#include "pipelines/neural/motion/training_frames.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/motion/training_frames.h"
+#include "pipelines/neural/motion/training_frames.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/pipelines/clip_span.h"
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "neural/motion/motion_frame.h"
+#include "pipelines/clip_span.h"
+#include "render/texture/planar_image.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/neural/motion/rollout_plan.h"
-#include "bodyloom/neural/motion/train_motion.h"
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
-#include "bodyloom/render/image/image.h"
+#include "data_tools/descriptors/person_frames.h"
+#include "neural/motion/rollout_plan.h"
+#include "neural/motion/train_motion.h"
+#include "pipelines/neural/motion/motion_data.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/parser/parser_pictures.h"
+#include "pipelines/neural/parser/parser_pictures.h"
 
 #include <iterator>
 #include <mutex>
@@ -7,16 +7,16 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/neural/parser/train_parser.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/overlay.h"
-#include "bodyloom/render/view/view_camera.h"
-#include "bodyloom/tracking/detection/clothes_parser.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/percentile.h"
+#include "geometry/body/posed_body.h"
+#include "neural/parser/train_parser.h"
+#include "pipelines/neural/photo/people_data.h"
+#include "render/texture/planar_image.h"
+#include "render/view/overlay.h"
+#include "render/view/view_camera.h"
+#include "tracking/detection/clothes_parser.h"
 
 namespace bodyloom {
 namespace {

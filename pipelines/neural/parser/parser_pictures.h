@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/parser/packed_picture.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "geometry/base/callbacks.h"
+#include "neural/parser/packed_picture.h"
+#include "pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/parser/train_clothes_parser.h"
+#include "pipelines/neural/parser/train_clothes_parser.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "bodyloom/data_tools/learned/parser_weights_io.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/parser/parser_pictures.h"
-#include "bodyloom/pipelines/neural/training_session.h"
+#include "data_tools/learned/parser_weights_io.h"
+#include "geometry/base/parallel.h"
+#include "pipelines/files.h"
+#include "pipelines/neural/parser/parser_pictures.h"
+#include "pipelines/neural/training_session.h"
 
 namespace bodyloom {
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/parser/train_parser.h"
+#include "geometry/base/callbacks.h"
+#include "neural/parser/train_parser.h"
 
 namespace bodyloom {
 

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/photo/animate_photo.h"
+#include "pipelines/neural/photo/animate_photo.h"
 
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/prefetcher.h"
-#include "bodyloom/neural/photo/photo_renderer.h"
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/pipelines/animate/animation_limits.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/photo/photo_animation.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/pipelines/runs/run_config.h"
-#include "bodyloom/render/texture/complete/partial_texture.h"
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_writer.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/prefetcher.h"
+#include "neural/photo/photo_renderer.h"
+#include "neural/training/training_run.h"
+#include "pipelines/animate/animation_limits.h"
+#include "pipelines/files.h"
+#include "pipelines/neural/photo/photo_animation.h"
+#include "pipelines/report_json.h"
+#include "pipelines/runs/run_config.h"
+#include "render/texture/complete/partial_texture.h"
+#include "render/texture/planar_image.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

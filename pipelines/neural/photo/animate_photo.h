@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/pipelines/neural/photo/photo_animation.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/neural/photo/photo_animation.h"
 
 namespace bodyloom {
 

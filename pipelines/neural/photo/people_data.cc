@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "pipelines/neural/photo/people_data.h"
 
 #include <algorithm>
 #include <array>
@@ -12,18 +12,18 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/learned/parser_weights_io.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/pipelines/animate/person_segmentation.h"
-#include "bodyloom/pipelines/neural/photo/photo_input.h"
-#include "bodyloom/tracking/detection/clothes_parser.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/multi_person_dataset.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/learned/parser_weights_io.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/synthesis/clips/perturbed_motion.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "geometry/scene/track_edits.h"
+#include "pipelines/animate/person_segmentation.h"
+#include "pipelines/neural/photo/photo_input.h"
+#include "tracking/detection/clothes_parser.h"
 
 namespace bodyloom {
 namespace {

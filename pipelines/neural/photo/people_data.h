@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

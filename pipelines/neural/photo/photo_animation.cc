@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/photo/photo_animation.h"
+#include "pipelines/neural/photo/photo_animation.h"
 
 #include <algorithm>
 #include <charconv>
@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/datasets/photo_segmentation.h"
-#include "bodyloom/data_tools/observations/frame_numbers.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/animate/animation_limits.h"
+#include "data_tools/datasets/photo_segmentation.h"
+#include "data_tools/observations/frame_numbers.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "pipelines/animate/animation_limits.h"
 
 namespace bodyloom {
 

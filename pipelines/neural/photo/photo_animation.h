@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/photo_maps.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/pipelines/animate/background.h"
-#include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/neural/photo/photo_input.h"
-#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "data_tools/descriptors/photo_maps.h"
+#include "geometry/scene/track.h"
+#include "pipelines/animate/background.h"
+#include "pipelines/neural/animation.h"
+#include "pipelines/neural/photo/photo_input.h"
+#include "render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
 

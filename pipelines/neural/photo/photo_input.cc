@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/photo/photo_input.h"
+#include "pipelines/neural/photo/photo_input.h"
 
 #include <algorithm>
 #include <array>
@@ -10,20 +10,20 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/photo_segmentation.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/learned/parser_weights_io.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/pipelines/animate/person_segmentation.h"
-#include "bodyloom/pipelines/animate/photo_pictures.h"
-#include "bodyloom/render/texture/complete/partial_texture.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
-#include "bodyloom/tracking/detection/clothes_parser.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/photo_segmentation.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/learned/parser_weights_io.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/part_labels.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/track_edits.h"
+#include "pipelines/animate/person_segmentation.h"
+#include "pipelines/animate/photo_pictures.h"
+#include "render/texture/complete/partial_texture.h"
+#include "render/uv_maps/posed_track.h"
+#include "tracking/detection/clothes_parser.h"
 
 namespace bodyloom {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/photo_maps.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "data_tools/descriptors/photo_maps.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/track.h"
+#include "render/image/image.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

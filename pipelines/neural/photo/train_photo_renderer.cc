@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/photo/train_photo_renderer.h"
+#include "pipelines/neural/photo/train_photo_renderer.h"
 
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/evaluation/ssim.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/photo/photo_window.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/pipelines/neural/training_session.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/runs/run_config.h"
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "data_tools/evaluation/ssim.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/check.h"
+#include "neural/photo/photo_window.h"
+#include "pipelines/files.h"
+#include "pipelines/neural/photo/people_data.h"
+#include "pipelines/neural/training_session.h"
+#include "pipelines/neural/weights_folder.h"
+#include "pipelines/runs/run_config.h"
+#include "render/texture/planar_image.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/photo/train_photo.h"
-#include "bodyloom/render/image/image.h"
+#include "geometry/base/callbacks.h"
+#include "neural/photo/train_photo.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/score/person_of_frames.h"
+#include "pipelines/neural/score/person_of_frames.h"
 
 #include <string>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/photo_avatar/photo_person.h"
-#include "bodyloom/render/photo_avatar/photo_person_builder.h"
-#include "bodyloom/render/texture/planar_image.h"
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
+#include "render/photo_avatar/photo_person.h"
+#include "render/photo_avatar/photo_person_builder.h"
+#include "render/texture/planar_image.h"
 
 namespace bodyloom {
 namespace {

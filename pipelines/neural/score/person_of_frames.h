@@ -5,11 +5,11 @@
 #include <optional>
 #include <span>
 
-#include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/render/garment/fit_clothes.h"
-#include "bodyloom/render/photo_avatar/draw_person.h"
-#include "bodyloom/render/photo_avatar/photo_person.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "pipelines/neural/photo/people_data.h"
+#include "render/garment/fit_clothes.h"
+#include "render/photo_avatar/draw_person.h"
+#include "render/photo_avatar/photo_person.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/score/score_people.h"
+#include "pipelines/neural/score/score_people.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,16 +9,16 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/guided/choose_photos.h"
-#include "bodyloom/pipelines/files.h"
-#include "bodyloom/pipelines/neural/animation.h"
-#include "bodyloom/pipelines/neural/guided/guided_scores.h"
-#include "bodyloom/pipelines/neural/score/scored_renderer.h"
-#include "bodyloom/pipelines/neural/weights_folder.h"
-#include "bodyloom/pipelines/report_json.h"
-#include "bodyloom/render/texture/planar_image.h"
-#include "bodyloom/render/view/contact_sheet.h"
+#include "geometry/base/check.h"
+#include "neural/guided/choose_photos.h"
+#include "pipelines/files.h"
+#include "pipelines/neural/animation.h"
+#include "pipelines/neural/guided/guided_scores.h"
+#include "pipelines/neural/score/scored_renderer.h"
+#include "pipelines/neural/weights_folder.h"
+#include "pipelines/report_json.h"
+#include "render/texture/planar_image.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {

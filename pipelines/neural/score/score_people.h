@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/neural/guided/guided_scores.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "geometry/base/callbacks.h"
+#include "neural/guided/guided_config.h"
+#include "neural/guided/guided_scores.h"
+#include "pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 

@@ -3,14 +3,14 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/neural/guided/guided_renderer.h"
-#include "bodyloom/neural/photo/photo_renderer.h"
-#include "bodyloom/neural/training/training_run.h"
-#include "bodyloom/pipelines/neural/guided/guided_people.h"
-#include "bodyloom/pipelines/neural/score/scored_renderer.h"
-#include "bodyloom/pipelines/runs/run_config.h"
-#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "geometry/base/parallel.h"
+#include "neural/guided/guided_renderer.h"
+#include "neural/photo/photo_renderer.h"
+#include "neural/training/training_run.h"
+#include "pipelines/neural/guided/guided_people.h"
+#include "pipelines/neural/score/scored_renderer.h"
+#include "pipelines/runs/run_config.h"
+#include "render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
 namespace {

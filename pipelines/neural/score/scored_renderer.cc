@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/score/scored_renderer.h"
+#include "pipelines/neural/score/scored_renderer.h"
 
 #include <algorithm>
 

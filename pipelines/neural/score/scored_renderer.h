@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/neural/guided/coherent_maps.h"
-#include "bodyloom/pipelines/neural/photo/people_data.h"
-#include "bodyloom/pipelines/neural/score/score_people.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/guided/coherent_maps.h"
+#include "pipelines/neural/photo/people_data.h"
+#include "pipelines/neural/score/score_people.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/pipelines/neural/score/person_of_frames.h"
-#include "bodyloom/pipelines/neural/score/scored_renderer.h"
-#include "bodyloom/render/photo_avatar/draw_person.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/base/parallel.h"
+#include "pipelines/neural/score/person_of_frames.h"
+#include "pipelines/neural/score/scored_renderer.h"
+#include "render/photo_avatar/draw_person.h"
 
 namespace bodyloom {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/learning/adam.h"
+#include "render/gaussian_avatar/learning/adam.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/gaussian_avatar/learning/adam_simd.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/gaussian_avatar/learning/adam_simd.h"
 
 namespace bodyloom {
 namespace {

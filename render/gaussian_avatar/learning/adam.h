@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/render/splat/float_columns.h"
+#include "render/splat/float_columns.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/learning/avatar_trainer.h"
+#include "render/gaussian_avatar/learning/avatar_trainer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/render/gaussian_avatar/cloth_bones.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "render/gaussian_avatar/cloth_bones.h"
 
 namespace bodyloom {
 namespace {

@@ -31,14 +31,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/base/stopwatch.h"
-#include "bodyloom/render/gaussian_avatar/avatar_painter.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
-#include "bodyloom/render/gaussian_avatar/learning/adam.h"
-#include "bodyloom/render/gaussian_avatar/learning/held_out_curve.h"
-#include "bodyloom/render/gaussian_avatar/learning/pose_refiner.h"
-#include "bodyloom/render/gaussian_avatar/learning/relocate_gaussians.h"
-#include "bodyloom/render/gaussian_avatar/learning/training_view.h"
+#include "geometry/base/stopwatch.h"
+#include "render/gaussian_avatar/avatar_painter.h"
+#include "render/gaussian_avatar/gaussian_body.h"
+#include "render/gaussian_avatar/learning/adam.h"
+#include "render/gaussian_avatar/learning/held_out_curve.h"
+#include "render/gaussian_avatar/learning/pose_refiner.h"
+#include "render/gaussian_avatar/learning/relocate_gaussians.h"
+#include "render/gaussian_avatar/learning/training_view.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/learning/loose_gaussians.h"
+#include "render/gaussian_avatar/learning/loose_gaussians.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
+#include "geometry/base/parallel.h"
+#include "geometry/body/posed_body.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 
 namespace bodyloom {
 namespace {

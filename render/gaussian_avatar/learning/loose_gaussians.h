@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
-#include "bodyloom/render/gaussian_avatar/learning/training_view.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
+#include "render/gaussian_avatar/gaussian_body.h"
+#include "render/gaussian_avatar/learning/training_view.h"
 
 namespace bodyloom {
 

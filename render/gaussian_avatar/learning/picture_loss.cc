@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/learning/picture_loss.h"
+#include "render/gaussian_avatar/learning/picture_loss.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/render/gaussian_avatar/learning/ssim_filter_simd.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "render/gaussian_avatar/learning/ssim_filter_simd.h"
 
 namespace bodyloom {
 namespace {

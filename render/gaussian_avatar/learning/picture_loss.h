@@ -14,7 +14,7 @@
 
 #include <array>
 
-#include "bodyloom/render/splat/float_columns.h"
+#include "render/splat/float_columns.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/learning/pose_refiner.h"
+#include "render/gaussian_avatar/learning/pose_refiner.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skeleton_gradient.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/base/check.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skeleton_gradient.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom {
 namespace {

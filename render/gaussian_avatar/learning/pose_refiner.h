@@ -27,11 +27,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
-#include "bodyloom/render/splat/float_columns.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/track.h"
+#include "render/gaussian_avatar/avatar_frame.h"
+#include "render/splat/float_columns.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/learning/relocate_gaussians.h"
+#include "render/gaussian_avatar/learning/relocate_gaussians.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom {
 namespace {

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 
 namespace bodyloom {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/learning/ssim_filter_simd.h"
+#include "render/gaussian_avatar/learning/ssim_filter_simd.h"
 
 #include <cmath>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bodyloom/render/gaussian_avatar/learning/ssim_filter_simd.cc"
+#define HWY_TARGET_INCLUDE "render/gaussian_avatar/learning/ssim_filter_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>

@@ -6,11 +6,11 @@
 #include <functional>
 #include <vector>
 
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/gaussian_avatar/avatar_frame.h"
-#include "bodyloom/render/gaussian_avatar/learning/picture_loss.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/image/pixel_box.h"
+#include "geometry/scene/camera.h"
+#include "render/gaussian_avatar/avatar_frame.h"
+#include "render/gaussian_avatar/learning/picture_loss.h"
+#include "render/image/image.h"
+#include "render/image/pixel_box.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/guess_unseen.h"
+#include "render/texture/complete/guess_unseen.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "geometry/base/check.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 namespace {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/render/texture/complete/texel_neighbours.h"
+#include "render/texture/complete/texel_neighbours.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "render/texture/complete/partial_texture.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/texture/complete/guess_unseen.h"
+#include "geometry/base/check.h"
+#include "render/texture/complete/guess_unseen.h"
 
 namespace bodyloom {
 namespace {

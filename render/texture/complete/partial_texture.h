@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/render/texture/complete/texel_neighbours.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "render/texture/complete/texel_neighbours.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

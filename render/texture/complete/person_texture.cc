@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/person_texture.h"
+#include "render/texture/complete/person_texture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/texture/complete/uv_fill.h"
-#include "bodyloom/render/view/overlay.h"
+#include "render/image/image.h"
+#include "render/texture/complete/uv_fill.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {

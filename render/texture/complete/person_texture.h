@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/texture/texture_extract.h"
+#include "geometry/scene/track.h"
+#include "render/texture/texture_extract.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/rest_views.h"
+#include "render/texture/complete/rest_views.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/render/raster/visible_points.h"
+#include "render/raster/visible_points.h"
 
 namespace bodyloom {
 namespace {

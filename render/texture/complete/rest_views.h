@@ -7,10 +7,10 @@
 #include <array>
 #include <optional>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/texel_counterparts.h"
+#include "render/texture/complete/texel_counterparts.h"
 
 #include <array>
 
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/body/skinning.h"
 
 namespace bodyloom {
 

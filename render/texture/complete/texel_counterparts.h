@@ -12,10 +12,10 @@
 #include <functional>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/texture/complete/rest_views.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/texture/complete/rest_views.h"
 
 namespace bodyloom {
 

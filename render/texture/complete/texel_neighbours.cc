@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/texel_neighbours.h"
+#include "render/texture/complete/texel_neighbours.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <map>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/texture/complete/body_part_map.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "geometry/base/check.h"
+#include "render/texture/complete/body_part_map.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 namespace {

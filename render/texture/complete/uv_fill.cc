@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/uv_fill.h"
+#include "render/texture/complete/uv_fill.h"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <map>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/texture/uv_sample.h"
+#include "geometry/base/check.h"
+#include "render/texture/uv_sample.h"
 
 namespace bodyloom {
 namespace {

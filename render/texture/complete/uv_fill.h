@@ -18,8 +18,8 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "geometry/body/body_model.h"
+#include "geometry/uv_maps/uv_texels.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/whole_texture.h"
+#include "render/texture/complete/whole_texture.h"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
@@ -8,15 +8,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/uv_maps/uv_charts.h"
-#include "bodyloom/render/image/palette.h"
-#include "bodyloom/render/texture/complete/rest_views.h"
-#include "bodyloom/render/texture/complete/texel_counterparts.h"
-#include "bodyloom/render/texture/complete/uv_fill.h"
-#include "bodyloom/render/texture/uv_sample.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/base/percentile.h"
+#include "geometry/uv_maps/uv_charts.h"
+#include "render/image/palette.h"
+#include "render/texture/complete/rest_views.h"
+#include "render/texture/complete/texel_counterparts.h"
+#include "render/texture/complete/uv_fill.h"
+#include "render/texture/uv_sample.h"
 
 namespace bodyloom {
 namespace {

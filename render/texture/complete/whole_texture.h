@@ -31,11 +31,11 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/texture/body_regions.h"
-#include "bodyloom/render/texture/texture_extract.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/arrays.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/texture/body_regions.h"
+#include "render/texture/texture_extract.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/avatar/avatar_file.h"
+#include "data_tools/avatar/avatar_file.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
-#include "bodyloom/data_tools/avatar/gaussian_ply.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/avatar/gaussian_ply.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

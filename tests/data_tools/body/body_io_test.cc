@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/body_io.h"
+#include "data_tools/body/body_io.h"
 
 #include <gmock/gmock.h>
 
@@ -11,11 +11,11 @@
 #include <set>
 #include <tuple>
 
-#include "bodyloom/data_tools/body/body_compact.h"
-#include "bodyloom/data_tools/body/body_smpl.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/body/body_compact.h"
+#include "data_tools/body/body_smpl.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/observations.h"
 #include "tests/data_tools/body/small_body.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"

@@ -6,9 +6,9 @@
 #include <memory>
 #include <sstream>
 
-#include "bodyloom/data_tools/body/body_io.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/obj.h"
+#include "data_tools/body/body_io.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/obj.h"
 #include "tests/data_tools/body/small_body.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"

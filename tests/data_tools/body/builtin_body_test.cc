@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <iterator>
 #include <random>
 
-#include "bodyloom/data_tools/body_making/cage.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/body_making/cage.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/formats/printable.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"

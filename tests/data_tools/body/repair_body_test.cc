@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body/repair_body.h"
+#include "data_tools/body/repair_body.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/mesh/mesh_check.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/mesh/mesh_check.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::repair_body_test {

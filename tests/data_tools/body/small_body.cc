@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 
 namespace bodyloom {

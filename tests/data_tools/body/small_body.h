@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/formats/npz.h"
 
 namespace bodyloom {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body_making/cage.h"
+#include "data_tools/body_making/cage.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/printable.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
 namespace bodyloom::builtin_body_cage_test {

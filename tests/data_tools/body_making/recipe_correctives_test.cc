@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/body_making/recipe_support.h"
 
 namespace bodyloom::recipe_correctives_test {

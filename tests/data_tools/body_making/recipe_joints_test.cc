@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 #include "tests/data_tools/body_making/recipe_support.h"
 
 namespace bodyloom::recipe_joints_test {

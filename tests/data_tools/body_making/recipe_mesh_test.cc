@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "bodyloom/data_tools/body_making/cage.h"
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/body_making/cage.h"
+#include "data_tools/formats/npz.h"
 #include "tests/data_tools/body_making/recipe_support.h"
 #include "tests/support/paths.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/body_making/subdivision.h"
+#include "data_tools/body_making/subdivision.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "bodyloom/data_tools/body_making/openmesh_catmull_clark.h"
+#include "data_tools/body_making/openmesh_catmull_clark.h"
 
 namespace bodyloom::subdivision_test {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/posed_body.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
 
 namespace bodyloom::recipe_self_intersection_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/body_truth.h"
+#include "data_tools/datasets/body_truth.h"
 
 #include <gmock/gmock.h>
 
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/photo_segmentation.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "data_tools/datasets/photo_segmentation.h"
+#include "data_tools/datasets/single_person_dataset.h"
 
 namespace bodyloom::body_truth_test {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/multi_person_dataset.h"
+#include "data_tools/datasets/multi_person_dataset.h"
 
 #include <gmock/gmock.h>
 
 #include <filesystem>
 #include <set>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/people/make_multi_person_dataset.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/people/make_multi_person_dataset.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
+#include "data_tools/datasets/single_person_dataset.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/densepose_iuv.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/parallel.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/densepose_iuv.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/parallel.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/dense_history.h"
+#include "data_tools/descriptors/dense_history.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/scene/observations.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 #include "tests/support/write_iuv.h"

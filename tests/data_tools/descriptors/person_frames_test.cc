@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "data_tools/descriptors/person_frames.h"
+#include "render/uv_maps/posed_track.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/descriptors/describe_track.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "render/raster/visibility_buffer.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom::person_frames_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/descriptors/photo_maps.h"
+#include "data_tools/descriptors/photo_maps.h"
 
 #include <gmock/gmock.h>
 
@@ -9,9 +9,9 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/photo_segmentation.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/photo_segmentation.h"
+#include "render/uv_maps/posed_track.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 #include "tests/support/write_iuv.h"

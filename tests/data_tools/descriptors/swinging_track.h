@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/track.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/tracking/detection/inference/onnx_arithmetic.h"
-#include "bodyloom/tracking/detection/inference/onnx_image.h"
-#include "bodyloom/tracking/detection/inference/onnx_products.h"
-#include "bodyloom/tracking/detection/inference/onnx_rearrangement.h"
+#include "tracking/detection/inference/onnx_arithmetic.h"
+#include "tracking/detection/inference/onnx_image.h"
+#include "tracking/detection/inference/onnx_products.h"
+#include "tracking/detection/inference/onnx_rearrangement.h"
 
 namespace bodyloom::onnx_operators_test {
 namespace {

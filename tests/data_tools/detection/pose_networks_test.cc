@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/tracking/detection/inference/tflite_network.h"
-#include "bodyloom/tracking/detection/model_files.h"
+#include "data_tools/formats/atomic_file.h"
 #include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/model_files.h"
 
 namespace bodyloom::pose_networks_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/tflite_model.h"
 #include "tests/data_tools/detection/tflite_writer.h"
+#include "tracking/detection/inference/tflite_model.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Files that are cut off, changed or something else altogether: read or refused in one line, never overrun.
-#include "bodyloom/tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_model.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <random>
 
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/printable.h"
 #include "tests/data_tools/detection/small_networks.h"
 #include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"

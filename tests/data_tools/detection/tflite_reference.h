@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_model.h"
 
 namespace bodyloom {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/estimates/body_estimate.h"
+#include "data_tools/estimates/body_estimate.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/data_tools/body/body_landmarks.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/geometry/body/posed_body.h"
+#include "data_tools/body/body_landmarks.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/estimates/estimate_arrays.h"
+#include "geometry/body/posed_body.h"
 #include "tests/data_tools/estimates/estimate_files.h"
 
 namespace bodyloom::body_estimate_test {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/estimates/body_estimate.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/estimates/body_estimate.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/formats/joblib_stream.h"
 #include "tests/data_tools/formats/torch_stream.h"
 

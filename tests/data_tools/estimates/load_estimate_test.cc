@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/estimates/load_estimate.h"
+#include "data_tools/estimates/load_estimate.h"
 
 #include <gmock/gmock.h>
 
@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/estimates/estimate_arrays.h"
+#include "data_tools/formats/npz.h"
 #include "tests/data_tools/estimates/estimate_files.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"

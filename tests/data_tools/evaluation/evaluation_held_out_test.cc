@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/held_out_views.h"
+#include "data_tools/evaluation/held_out_views.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/evaluation/triangulated_clip.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

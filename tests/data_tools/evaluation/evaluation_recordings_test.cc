@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "bodyloom/data_tools/evaluation/aist_evaluation.h"
-#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/evaluation/aist_evaluation.h"
+#include "data_tools/evaluation/triangulated_clip.h"
+#include "data_tools/formats/npz.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
 

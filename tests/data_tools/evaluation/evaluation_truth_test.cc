@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/truth_evaluation.h"
+#include "data_tools/evaluation/truth_evaluation.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "bodyloom/data_tools/evaluation/evaluation.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/evaluation/evaluation.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

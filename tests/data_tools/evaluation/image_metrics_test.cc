@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/image_metrics.h"
+#include "data_tools/evaluation/image_metrics.h"
 
 #include <gmock/gmock.h>
 

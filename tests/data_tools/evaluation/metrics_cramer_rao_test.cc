@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/cramer_rao.h"
+#include "data_tools/evaluation/cramer_rao.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/metrics.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom::metrics_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/motion_quality.h"
+#include "data_tools/evaluation/motion_quality.h"
 
 #include <gmock/gmock.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/motion/motion_floor.h"
-#include "bodyloom/data_tools/motion/motion_sheet.h"
-#include "bodyloom/render/image/palette.h"
+#include "data_tools/motion/motion_floor.h"
+#include "data_tools/motion/motion_sheet.h"
+#include "render/image/palette.h"
 #include "tests/data_tools/motion/motion_support.h"
 
 namespace bodyloom::motion_quality_test {

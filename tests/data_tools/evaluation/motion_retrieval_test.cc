@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/motion_retrieval.h"
+#include "data_tools/evaluation/motion_retrieval.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 #include "tests/data_tools/evaluation/short_turning_clip.h"
 
 namespace bodyloom::motion_retrieval_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/aist_evaluation.h"
+#include "data_tools/evaluation/aist_evaluation.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <memory>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/vertex_errors.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/vertex_errors.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/toy_poses.h"
 
 namespace bodyloom::pseudo_truth_test {

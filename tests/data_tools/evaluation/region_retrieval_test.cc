@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/region_retrieval.h"
+#include "data_tools/evaluation/region_retrieval.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/scene/observations.h"
 #include "tests/data_tools/evaluation/short_turning_clip.h"
 
 namespace bodyloom::region_retrieval_test {

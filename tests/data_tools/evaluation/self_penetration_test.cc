@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/self_penetration.h"
+#include "data_tools/evaluation/self_penetration.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 #include <numeric>
 #include <random>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/posed_body.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
 #include "tests/support/meshes.h"
 
 namespace bodyloom::self_penetration_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/sigma_reliability.h"
+#include "data_tools/evaluation/sigma_reliability.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/scene/observations.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom::sigma_reliability_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/ssim.h"
+#include "data_tools/evaluation/ssim.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/data_tools/evaluation/ssim_rows_simd.h"
+#include "data_tools/evaluation/ssim_rows_simd.h"
 
 namespace bodyloom::ssim_test {
 namespace {

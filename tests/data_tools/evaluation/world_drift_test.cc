@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/evaluation/world_drift.h"
+#include "data_tools/evaluation/world_drift.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/bvh_writer.h"
+#include "data_tools/motion/bvh_writer.h"
 #include "tests/data_tools/export/exported_scene.h"
 
 namespace bodyloom::bvh_rig_test {

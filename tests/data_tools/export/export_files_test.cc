@@ -9,16 +9,16 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/export/c3d_writer.h"
-#include "bodyloom/data_tools/export/camera_writers.h"
-#include "bodyloom/data_tools/export/markers.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/amass.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/observations/colmap_reader.h"
-#include "bodyloom/data_tools/observations/load_camera_path.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/export/c3d_writer.h"
+#include "data_tools/export/camera_writers.h"
+#include "data_tools/export/markers.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/amass.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/observations/colmap_reader.h"
+#include "data_tools/observations/load_camera_path.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/export/export_scene.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/export/export_scene.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/export/glb_writer.h"
+#include "data_tools/export/glb_writer.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "bodyloom/data_tools/export/skinned_mesh.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/export/skinned_mesh.h"
+#include "geometry/scene/camera_path.h"
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/export/gltf_twin.h"
 

@@ -2,7 +2,7 @@
 /// Pickles of joblib.dump, in which arrays lie between the opcodes.
 #include <gmock/gmock.h>
 
-#include "bodyloom/data_tools/formats/pickle.h"
+#include "data_tools/formats/pickle.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/joblib_stream.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/formats/npz.h"
 
 #include <gmock/gmock.h>
 
@@ -9,9 +9,9 @@
 #include <limits>
 #include <numeric>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/element_type.h"
-#include "bodyloom/data_tools/formats/zip.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/element_type.h"
+#include "data_tools/formats/zip.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

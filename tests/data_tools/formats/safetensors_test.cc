@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/weights_file.h"
+#include "data_tools/formats/weights_file.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/sha256.h"
+#include "data_tools/formats/sha256.h"
 
 #include <gtest/gtest.h>
 

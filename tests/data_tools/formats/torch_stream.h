@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/zip.h"
+#include "data_tools/formats/zip.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 
 namespace bodyloom::torch_stream {

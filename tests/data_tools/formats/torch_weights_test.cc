@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/formats/torch_weights.h"
+#include "data_tools/formats/torch_weights.h"
 
 #include <gmock/gmock.h>
 
 #include <functional>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/pickle.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/pickle.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/formats/torch_stream.h"

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bodyloom/data_tools/formats/element_type.h"
-#include "bodyloom/data_tools/formats/mat_headers.h"
+#include "data_tools/formats/element_type.h"
+#include "data_tools/formats/mat_headers.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/fuzz/fuzz_seeds.h"
 #include "tests/fuzz/fuzz_array_targets.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/data_tools/fuzz/fuzz_run_seeds.h"
 
-#include "bodyloom/pipelines/batch/batch_clip.h"
-#include "bodyloom/pipelines/runs/motion_run.h"
-#include "bodyloom/pipelines/runs/run_config.h"
+#include "pipelines/batch/batch_clip.h"
+#include "pipelines/runs/motion_run.h"
+#include "pipelines/runs/run_config.h"
 
 namespace bodyloom::fuzz {
 

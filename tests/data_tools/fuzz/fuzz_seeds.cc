@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/data_tools/fuzz/fuzz_seeds.h"
 
-#include "bodyloom/data_tools/body/body_compact.h"
-#include "bodyloom/data_tools/body/body_smpl.h"
-#include "bodyloom/data_tools/formats/weights_file.h"
-#include "bodyloom/data_tools/formats/zip.h"
+#include "data_tools/body/body_compact.h"
+#include "data_tools/body/body_smpl.h"
+#include "data_tools/formats/weights_file.h"
+#include "data_tools/formats/zip.h"
 #include "tests/data_tools/body/small_body.h"
 #include "tests/data_tools/detection/small_networks.h"
 #include "tests/data_tools/detection/small_onnx.h"

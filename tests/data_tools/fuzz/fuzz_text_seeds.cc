@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/data_tools/fuzz/fuzz_text_seeds.h"
 
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
+#include "data_tools/observations/keypoint_conventions.h"
 #include "tests/support/stick_person.h"
 
 namespace bodyloom::fuzz {

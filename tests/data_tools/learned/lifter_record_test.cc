@@ -10,13 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/motion/motion_library.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
-#include "bodyloom/tracking/lifter/lifter_network.h"
-#include "bodyloom/tracking/lifter/lifter_reading.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/motion/motion_library.h"
+#include "data_tools/synthesis/lifter/lifter_windows.h"
 #include "tests/support/paths.h"
+#include "tracking/lifter/lifter_network.h"
+#include "tracking/lifter/lifter_reading.h"
 
 namespace bodyloom::lifter_record_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/lifter_weights_io.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <functional>
 #include <random>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
 #include "tests/support/paths.h"
+#include "tracking/lifter/lifter_input.h"
 
 namespace bodyloom::lifter_weights_io_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/learned/parser_weights_io.h"
+#include "data_tools/learned/parser_weights_io.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/random_picture_unet.h"
 

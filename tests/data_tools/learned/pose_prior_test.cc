@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <random>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_learning.h"
-#include "bodyloom/geometry/math/direction_bins.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/learned/pose_prior_learning.h"
+#include "geometry/math/direction_bins.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::pose_prior_test {

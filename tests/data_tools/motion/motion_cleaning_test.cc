@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/motion_cleaning.h"
+#include "data_tools/motion/motion_cleaning.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/motion/smpl_rest.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/motion/motion_support.h"
 
 namespace bodyloom::motion_cleaning_test {

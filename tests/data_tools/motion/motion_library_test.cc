@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/motion_library.h"
+#include "data_tools/motion/motion_library.h"
 
 #include <gmock/gmock.h>
 
@@ -8,14 +8,14 @@
 #include <fstream>
 #include <set>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/amass.h"
-#include "bodyloom/data_tools/motion/bvh_writer.h"
-#include "bodyloom/data_tools/motion/motion_floor.h"
-#include "bodyloom/data_tools/motion/motion_split.h"
-#include "bodyloom/data_tools/motion/smpl_rest.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/amass.h"
+#include "data_tools/motion/bvh_writer.h"
+#include "data_tools/motion/motion_floor.h"
+#include "data_tools/motion/motion_split.h"
+#include "data_tools/motion/smpl_rest.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/motion/motion_support.h"

@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/amp_reader.h"
-#include "bodyloom/data_tools/motion/asf_amc_reader.h"
-#include "bodyloom/data_tools/motion/bvh_reader.h"
-#include "bodyloom/data_tools/motion/deepmimic_reader.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/motion/text_scanner.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/amp_reader.h"
+#include "data_tools/motion/asf_amc_reader.h"
+#include "data_tools/motion/bvh_reader.h"
+#include "data_tools/motion/deepmimic_reader.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/text_scanner.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"

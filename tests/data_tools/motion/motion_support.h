@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "bodyloom/data_tools/motion/motion_floor.h"
-#include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/scene/track.h"
+#include "data_tools/motion/motion_floor.h"
+#include "data_tools/motion/smpl_rest.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/resample_track.h"
+#include "data_tools/motion/resample_track.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/motion/resample_track.h"
+#include "data_tools/motion/resample_track.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/motion/motion_tools.h"
+#include "data_tools/motion/motion_tools.h"
 
 namespace bodyloom::resample_track_test {
 namespace {

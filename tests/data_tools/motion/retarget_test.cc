@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A known SMPL motion is seen through a foreign skeleton (other axes, units, names, rest pose and twist), written as
 /// BVH, read back and retargeted: it must come back as it was.
-#include "bodyloom/data_tools/motion/retarget.h"
+#include "data_tools/motion/retarget.h"
 
 #include <gmock/gmock.h>
 
@@ -11,12 +11,12 @@
 #include <filesystem>
 #include <random>
 
-#include "bodyloom/data_tools/motion/bvh_reader.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/motion/skeleton_map.h"
-#include "bodyloom/data_tools/motion/smpl_rest.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/motion/bvh_reader.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/skeleton_map.h"
+#include "data_tools/motion/smpl_rest.h"
+#include "geometry/body/body_model.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/paths.h"
 

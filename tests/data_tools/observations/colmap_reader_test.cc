@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/colmap_reader.h"
+#include "data_tools/observations/colmap_reader.h"
 
 #include <gmock/gmock.h>
 
 #include <cstring>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/frame_numbers.h"
 
 #include <gtest/gtest.h>
 

@@ -6,19 +6,19 @@
 #include <filesystem>
 #include <set>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/observations/densepose_iuv.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/render/image/image.h"
-#include "bodyloom/render/raster/visible_points.h"
-#include "bodyloom/tracking/detection/iuv_to_dense.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/observations/densepose_iuv.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera.h"
+#include "render/image/image.h"
+#include "render/raster/visible_points.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/toy_body.h"
+#include "tracking/detection/iuv_to_dense.h"
 
 namespace bodyloom::densepose_test {
 namespace {

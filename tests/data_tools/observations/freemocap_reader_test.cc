@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/freemocap_reader.h"
+#include "data_tools/observations/freemocap_reader.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/observations/load_detections.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 
 namespace bodyloom::freemocap_reader_test {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/load_camera_path.h"
+#include "data_tools/observations/load_camera_path.h"
 
 #include <gmock/gmock.h>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/load_detections.h"
+#include "data_tools/observations/load_detections.h"
 
 #include <gmock/gmock.h>
 
@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/observations/aist_reader.h"
-#include "bodyloom/data_tools/observations/keypoint_conventions.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/observations/aist_reader.h"
+#include "data_tools/observations/keypoint_conventions.h"
+#include "data_tools/observations/observations_npz.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"

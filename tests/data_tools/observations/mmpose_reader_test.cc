@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/mmpose_reader.h"
+#include "data_tools/observations/mmpose_reader.h"
 
 #include <gmock/gmock.h>
 
 #include <filesystem>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/observations/load_detections.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/stick_person.h"

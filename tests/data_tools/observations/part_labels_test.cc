@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/part_labels.h"
+#include "data_tools/observations/part_labels.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,16 +7,16 @@
 #include <cmath>
 #include <filesystem>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/evaluation/part_label_evaluation.h"
-#include "bodyloom/data_tools/observations/mask_runs.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/rendered_labels.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/tracking/lifter/given_landmarks.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/evaluation/part_label_evaluation.h"
+#include "data_tools/observations/mask_runs.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/rendered_labels.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/body/posed_body.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tracking/lifter/given_landmarks.h"
 
 namespace bodyloom::part_labels_test {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/people_npz.h"
+#include "data_tools/observations/people_npz.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bodyloom/data_tools/observations/load_detections.h"
+#include "data_tools/observations/load_detections.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

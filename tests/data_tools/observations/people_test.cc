@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/observations/people.h"
+#include "data_tools/observations/people.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/frame_numbers.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/stick_person.h"
 

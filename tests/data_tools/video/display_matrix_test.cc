@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns and mirror images against the matrix's own formula, against ffmpeg's, and as a phone's clip.
-#include "bodyloom/data_tools/video/frame_image.h"
+#include "data_tools/video/frame_image.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"
 

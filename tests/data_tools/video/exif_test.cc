@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/jpeg_header.h"
+#include "data_tools/video/jpeg_header.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/video/image_file.h"
 #include "tests/data_tools/video/clip_maker.h"
 #include "tests/data_tools/video/exif_maker.h"
 

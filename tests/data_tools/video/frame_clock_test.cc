@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/video/frame_decoder.h"
+#include "data_tools/video/frame_decoder.h"
 
 #include <gtest/gtest.h>
 

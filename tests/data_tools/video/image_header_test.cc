@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sizes in headers against OpenCV's encoders, and against bytes put together by hand where it writes none.
-#include "bodyloom/data_tools/video/image_header.h"
+#include "data_tools/video/image_header.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"
 

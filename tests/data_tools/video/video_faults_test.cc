@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/video_frame_times.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/data_tools/video/video_writer.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/video_frame_times.h"
+#include "data_tools/video/video_reader.h"
+#include "data_tools/video/video_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"

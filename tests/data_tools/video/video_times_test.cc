@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/video_frame_times.h"
-#include "bodyloom/data_tools/video/video_reader.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/video_frame_times.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"
 

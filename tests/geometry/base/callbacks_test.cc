@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/base/callbacks.h"
+#include "geometry/base/callbacks.h"
 
 #include <gtest/gtest.h>
 

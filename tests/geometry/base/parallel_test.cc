@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/base/parallel.h"
+#include "geometry/base/parallel.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

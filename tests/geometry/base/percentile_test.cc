@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/base/percentile.h"
+#include "geometry/base/percentile.h"
 
 #include <gtest/gtest.h>
 

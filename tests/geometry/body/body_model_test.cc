@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/body_model.h"
+#include "geometry/body/body_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

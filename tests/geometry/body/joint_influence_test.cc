@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/body/skinning.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/normals.h"
+#include "geometry/body/normals.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/body/skinning_simd.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning_simd.h"
 #include "tests/support/meshes.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/posed_body.h"
+#include "geometry/body/posed_body.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 #include "tests/geometry/random_body.h"
 #include "tests/geometry/slow_body.h"
 #include "tests/support/toy_body.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/skeleton_gradient.h"
+#include "geometry/body/skeleton_gradient.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/skinning.h"
+#include "geometry/body/skinning.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/body/skinning_simd.h"
+#include "geometry/body/skinning_simd.h"
 #include "tests/geometry/random_body.h"
 #include "tests/support/toy_body.h"
 

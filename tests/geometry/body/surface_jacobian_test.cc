@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/body/surface_jacobian.h"
+#include "geometry/body/surface_jacobian.h"
 
 #include <ceres/jet.h>
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 #include "tests/geometry/random_body.h"
 #include "tests/geometry/slow_body.h"
 #include "tests/support/toy_body.h"

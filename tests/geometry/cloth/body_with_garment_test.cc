@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/body_with_garment.h"
+#include "geometry/cloth/body_with_garment.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/cloth/cloth_body.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/cloth/cloth_body.h"
+#include "geometry/uv_maps/uv_texels.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::body_with_garment_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/cloth_nodes.h"
+#include "geometry/cloth/cloth_nodes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::cloth_nodes_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/cloth_simulation.h"
+#include "geometry/cloth/cloth_simulation.h"
 
 #include <gmock/gmock.h>
 

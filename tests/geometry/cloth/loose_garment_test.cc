@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/cloth/loose_garment.h"
+#include "geometry/cloth/loose_garment.h"
 
 #include <gtest/gtest.h>
 

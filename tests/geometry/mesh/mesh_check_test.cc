@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/mesh/mesh_check.h"
+#include "geometry/mesh/mesh_check.h"
 
 #include <gtest/gtest.h>
 

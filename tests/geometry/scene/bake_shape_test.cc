@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/track_edits.h"
+#include "geometry/scene/track_edits.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/body/posed_body.h"
+#include "geometry/body/normals.h"
+#include "geometry/body/posed_body.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "geometry/scene/camera_path.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/camera.h"
+#include "geometry/scene/camera.h"
 
 #include <gtest/gtest.h>
 

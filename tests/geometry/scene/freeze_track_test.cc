@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/track_edits.h"
+#include "geometry/scene/track_edits.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/descriptors/person_frames.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/descriptors/person_frames.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom::freeze_track_test {

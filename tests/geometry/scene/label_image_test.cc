@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/label_image.h"
+#include "geometry/scene/label_image.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom::label_image_test {
 namespace {

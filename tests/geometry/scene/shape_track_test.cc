@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/track_edits.h"
+#include "geometry/scene/track_edits.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/render/uv_maps/posed_track.h"
+#include "data_tools/body/builtin_body.h"
+#include "render/uv_maps/posed_track.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom::shape_track_test {

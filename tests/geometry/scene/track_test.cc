@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/scene/track.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "bodyloom/geometry/scene/observations.h"
+#include "geometry/scene/observations.h"
 
 namespace bodyloom::track_test {
 namespace {

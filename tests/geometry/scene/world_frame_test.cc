@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/scene/world_frame.h"
+#include "geometry/scene/world_frame.h"
 
 #include <gtest/gtest.h>
 

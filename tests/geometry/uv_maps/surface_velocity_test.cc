@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
+#include "geometry/uv_maps/surface_velocity.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/surface_jacobian.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/body/surface_jacobian.h"
+#include "geometry/math/rotation.h"
 #include "tests/geometry/random_body.h"
 #include "tests/support/toy_body.h"
 

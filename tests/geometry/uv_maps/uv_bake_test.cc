@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/uv_maps/uv_bake.h"
+#include "geometry/uv_maps/uv_bake.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/body/skinning_simd.h"
-#include "bodyloom/geometry/uv_maps/uv_bake_simd.h"
+#include "geometry/body/skinning_simd.h"
+#include "geometry/uv_maps/uv_bake_simd.h"
 #include "tests/support/meshes.h"
 
 namespace bodyloom::uv_bake_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
+#include "geometry/uv_maps/uv_texels.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/base/runtime.h"
+#include "neural/base/runtime.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

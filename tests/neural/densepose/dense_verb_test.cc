@@ -8,17 +8,17 @@
 #include <fstream>
 
 #include "apps/usage_error.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/pipelines/track/track_inputs.h"
-#include "bodyloom/render/raster/visible_points.h"
-#include "bodyloom/tracking/detection/iuv_to_dense.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera.h"
+#include "pipelines/track/track_inputs.h"
+#include "render/raster/visible_points.h"
 #include "tests/neural/densepose/scripted_densepose.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
+#include "tracking/detection/iuv_to_dense.h"
 
 namespace bodyloom::dense_verb_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/densepose/densepose_network.h"
+#include "neural/densepose/densepose_network.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/densepose/paste_charts.h"
+#include "neural/densepose/paste_charts.h"
 
 #include <gtest/gtest.h>
 #include <torch/torch.h>

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/densepose/vision_operators.h"
+#include "neural/densepose/vision_operators.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

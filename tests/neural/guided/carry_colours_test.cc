@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/guided/guided_model.h"
+#include "neural/guided/guided_model.h"
 
 #include <gtest/gtest.h>
 

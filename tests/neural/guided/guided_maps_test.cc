@@ -5,14 +5,14 @@
 #include <cmath>
 #include <set>
 
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/guided/choose_photos.h"
-#include "bodyloom/neural/guided/complete_maps.h"
-#include "bodyloom/neural/guided/guided_batches.h"
-#include "bodyloom/neural/guided/guided_scores.h"
-#include "bodyloom/neural/metrics/contextual_similarity.h"
-#include "bodyloom/neural/metrics/lpips.h"
-#include "bodyloom/render/texture/complete/body_part_map.h"
+#include "neural/base/image_tensor.h"
+#include "neural/guided/choose_photos.h"
+#include "neural/guided/complete_maps.h"
+#include "neural/guided/guided_batches.h"
+#include "neural/guided/guided_scores.h"
+#include "neural/metrics/contextual_similarity.h"
+#include "neural/metrics/lpips.h"
+#include "render/texture/complete/body_part_map.h"
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/neural/metrics/named_features.h"
 

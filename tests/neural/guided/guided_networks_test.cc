@@ -7,11 +7,11 @@
 #include <cmath>
 #include <set>
 
-#include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/neural/guided/guided_tensors.h"
-#include "bodyloom/neural/guided/loss_balance.h"
-#include "bodyloom/neural/networks/architecture_card.h"
-#include "bodyloom/neural/networks/spatial_modulation.h"
+#include "neural/guided/guided_model.h"
+#include "neural/guided/guided_tensors.h"
+#include "neural/guided/loss_balance.h"
+#include "neural/networks/architecture_card.h"
+#include "neural/networks/spatial_modulation.h"
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/support/gradient_check.h"
 

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/neural/guided/guided_config.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/guided/guided_config.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

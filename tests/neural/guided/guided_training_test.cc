@@ -9,12 +9,12 @@
 #include <map>
 #include <set>
 
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/guided/guided_batches.h"
-#include "bodyloom/neural/guided/guided_model.h"
-#include "bodyloom/neural/guided/guided_renderer.h"
-#include "bodyloom/neural/guided/guided_tensors.h"
-#include "bodyloom/neural/guided/train_guided.h"
+#include "neural/base/runtime.h"
+#include "neural/guided/guided_batches.h"
+#include "neural/guided/guided_model.h"
+#include "neural/guided/guided_renderer.h"
+#include "neural/guided/guided_tensors.h"
+#include "neural/guided/train_guided.h"
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/neural/training/last_metrics.h"
 #include "tests/support/test_files.h"

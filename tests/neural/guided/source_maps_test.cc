@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is made up of a source that its photos do not show: labels, colours, how far clothes stand off.
-#include "bodyloom/neural/guided/source_maps.h"
+#include "neural/guided/source_maps.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "bodyloom/render/garment/clothes_extent.h"
+#include "render/garment/clothes_extent.h"
 #include "tests/neural/guided/guided_toy.h"
 
 namespace bodyloom::source_maps_test {

@@ -9,10 +9,10 @@
 #include <random>
 #include <sstream>
 
-#include "bodyloom/neural/lifter/lifter_loss.h"
-#include "bodyloom/neural/lifter/lifter_module.h"
-#include "bodyloom/neural/lifter/train_lifter.h"
-#include "bodyloom/tracking/lifter/lifter_network.h"
+#include "neural/lifter/lifter_loss.h"
+#include "neural/lifter/lifter_module.h"
+#include "neural/lifter/train_lifter.h"
+#include "tracking/lifter/lifter_network.h"
 
 namespace bodyloom::lifter_test {
 namespace {

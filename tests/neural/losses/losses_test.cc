@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/neural/losses/contextual_loss.h"
-#include "bodyloom/neural/losses/gan_losses.h"
-#include "bodyloom/neural/losses/image_losses.h"
+#include "neural/losses/contextual_loss.h"
+#include "neural/losses/gan_losses.h"
+#include "neural/losses/image_losses.h"
 #include "tests/support/gradient_check.h"
 
 namespace bodyloom::losses_test {

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/losses/contextual_loss.h"
-#include "bodyloom/neural/metrics/contextual_similarity.h"
-#include "bodyloom/neural/metrics/lpips.h"
-#include "bodyloom/neural/metrics/pixel_metrics.h"
-#include "bodyloom/neural/metrics/temporal_lpips.h"
-#include "bodyloom/neural/networks/vgg.h"
+#include "neural/base/image_tensor.h"
+#include "neural/losses/contextual_loss.h"
+#include "neural/metrics/contextual_similarity.h"
+#include "neural/metrics/lpips.h"
+#include "neural/metrics/pixel_metrics.h"
+#include "neural/metrics/temporal_lpips.h"
+#include "neural/networks/vgg.h"
 #include "tests/neural/metrics/named_features.h"
 
 namespace bodyloom::metrics_test {

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "bodyloom/neural/networks/vgg.h"
+#include "neural/networks/vgg.h"
 
 namespace bodyloom {
 

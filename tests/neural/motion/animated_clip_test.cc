@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Another person's motion, shown by the person that the motion-dependent renderer learned.
-#include "bodyloom/pipelines/neural/motion/animated_clip.h"
+#include "pipelines/neural/motion/animated_clip.h"
 
 #include <gmock/gmock.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/track_io.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/track_io.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 

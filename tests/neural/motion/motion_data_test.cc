@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the motion-dependent renderer learns from: a dataset's truth, or what stands in for it in a clip of one's own.
-#include "bodyloom/pipelines/neural/motion/motion_data.h"
+#include "pipelines/neural/motion/motion_data.h"
 
 #include <gmock/gmock.h>
 
@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/people/make_single_person_dataset.h"
 #include "tests/support/scratch_folder.h"
 
 namespace bodyloom::motion_data_test {

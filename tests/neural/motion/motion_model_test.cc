@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/cards/network_cards.h"
-#include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/neural/networks/architecture_card.h"
+#include "neural/base/image_tensor.h"
+#include "neural/cards/network_cards.h"
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_model.h"
+#include "neural/networks/architecture_card.h"
 #include "tests/neural/motion/toy_motion.h"
 #include "tests/support/paths.h"
 #include "tests/support/test_files.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <memory>
 
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/motion_scorer.h"
+#include "neural/base/image_tensor.h"
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_scorer.h"
 #include "tests/neural/motion/toy_motion.h"
 
 namespace bodyloom::motion_scorer_test {

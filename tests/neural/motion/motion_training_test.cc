@@ -13,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/descriptors/person_frames.h"
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/neural/motion/motion_renderer.h"
-#include "bodyloom/neural/motion/motion_scorer.h"
-#include "bodyloom/neural/motion/train_motion.h"
-#include "bodyloom/neural/training/checkpoint.h"
+#include "data_tools/descriptors/person_frames.h"
+#include "neural/base/image_tensor.h"
+#include "neural/base/runtime.h"
+#include "neural/motion/motion_model.h"
+#include "neural/motion/motion_renderer.h"
+#include "neural/motion/motion_scorer.h"
+#include "neural/motion/train_motion.h"
+#include "neural/training/checkpoint.h"
 #include "tests/neural/metrics/named_features.h"
 #include "tests/neural/motion/toy_motion.h"
 #include "tests/neural/training/last_metrics.h"

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/person_box.h"
+#include "neural/motion/person_box.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/motion_renderer.h"
-#include "bodyloom/neural/motion/roll_out.h"
-#include "bodyloom/neural/networks/aligned_box.h"
-#include "bodyloom/neural/training/checkpoint_file.h"
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_renderer.h"
+#include "neural/motion/roll_out.h"
+#include "neural/networks/aligned_box.h"
+#include "neural/training/checkpoint_file.h"
 #include "tests/neural/motion/toy_motion.h"
 
 namespace bodyloom::person_box_test {

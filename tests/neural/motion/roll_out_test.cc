@@ -2,10 +2,10 @@
 // The motion-dependent renderer frame by frame, and how far clothes reach.
 #include <gtest/gtest.h>
 
-#include "bodyloom/neural/motion/frame_tensors.h"
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/motion_model.h"
-#include "bodyloom/neural/motion/roll_out.h"
+#include "neural/motion/frame_tensors.h"
+#include "neural/motion/motion_frame.h"
+#include "neural/motion/motion_model.h"
+#include "neural/motion/roll_out.h"
 #include "tests/neural/motion/toy_motion.h"
 
 namespace bodyloom::roll_out_test {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/roll_out.h"
+#include "neural/motion/roll_out.h"
 
 #include <gtest/gtest.h>
 
-#include "bodyloom/neural/base/image_tensor.h"
+#include "neural/base/image_tensor.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom::rollout_memory_test {

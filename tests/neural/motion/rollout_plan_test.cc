@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/motion/rollout_plan.h"
+#include "neural/motion/rollout_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "bodyloom/neural/motion/motion_config.h"
-#include "bodyloom/neural/motion/motion_frame.h"
-#include "bodyloom/neural/motion/train_motion.h"
+#include "neural/motion/motion_config.h"
+#include "neural/motion/motion_frame.h"
+#include "neural/motion/train_motion.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/neural/base/image_tensor.h"
-#include "bodyloom/neural/networks/architecture_card.h"
-#include "bodyloom/neural/networks/load_weights.h"
-#include "bodyloom/neural/networks/patch_discriminator.h"
-#include "bodyloom/neural/networks/unet.h"
-#include "bodyloom/neural/networks/vgg.h"
+#include "neural/base/image_tensor.h"
+#include "neural/networks/architecture_card.h"
+#include "neural/networks/load_weights.h"
+#include "neural/networks/patch_discriminator.h"
+#include "neural/networks/unet.h"
+#include "neural/networks/vgg.h"
 
 namespace bodyloom::features_test {
 namespace {

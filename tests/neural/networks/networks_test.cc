@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/neural/networks/blocks.h"
-#include "bodyloom/neural/networks/patch_discriminator.h"
-#include "bodyloom/neural/networks/unet.h"
-#include "bodyloom/neural/networks/uv_sampler.h"
+#include "neural/networks/blocks.h"
+#include "neural/networks/patch_discriminator.h"
+#include "neural/networks/unet.h"
+#include "neural/networks/uv_sampler.h"
 #include "tests/support/gradient_check.h"
 
 namespace bodyloom::networks_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/networks/picture_unet_module.h"
+#include "neural/networks/picture_unet_module.h"
 
 #include <gtest/gtest.h>
 #include <torch/torch.h>
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/neural/base/device.h"
-#include "bodyloom/tracking/detection/inference/picture_unet_runner.h"
+#include "neural/base/device.h"
 #include "tests/support/random_picture_unet.h"
+#include "tracking/detection/inference/picture_unet_runner.h"
 
 namespace bodyloom::picture_unet_module_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/networks/uv_sampler.h"
+#include "neural/networks/uv_sampler.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/neural/parser/train_parser.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/base/hash_random.h"
+#include "neural/parser/train_parser.h"
 
 namespace bodyloom::parser_training_test {
 namespace {

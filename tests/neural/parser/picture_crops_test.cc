@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/parser/picture_crops.h"
+#include "neural/parser/picture_crops.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/neural/base/device.h"
+#include "neural/base/device.h"
 
 namespace bodyloom::picture_crops_test {
 namespace {

@@ -2,13 +2,13 @@
 // Heads that the face loss looks at: those whose face looks at the camera.
 #include <gtest/gtest.h>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/descriptors/photo_maps.h"
-#include "bodyloom/neural/guided/complete_maps.h"
-#include "bodyloom/neural/photo/photo_batch.h"
-#include "bodyloom/pipelines/neural/guided/guided_people.h"
-#include "bodyloom/pipelines/neural/photo/photo_input.h"
-#include "bodyloom/render/texture/complete/body_part_map.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/descriptors/photo_maps.h"
+#include "neural/guided/complete_maps.h"
+#include "neural/photo/photo_batch.h"
+#include "pipelines/neural/guided/guided_people.h"
+#include "pipelines/neural/photo/photo_input.h"
+#include "render/texture/complete/body_part_map.h"
 #include "tests/neural/photo/toy_photos.h"
 
 namespace bodyloom::face_box_test {

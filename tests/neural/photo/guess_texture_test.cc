@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/partial_texture.h"
+#include "render/texture/complete/partial_texture.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,11 +13,11 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/neural/photo/photo_model.h"
-#include "bodyloom/neural/photo/photo_renderer.h"
-#include "bodyloom/neural/photo/photo_tensors.h"
-#include "bodyloom/neural/training/checkpoint.h"
+#include "geometry/base/hash_random.h"
+#include "neural/photo/photo_model.h"
+#include "neural/photo/photo_renderer.h"
+#include "neural/photo/photo_tensors.h"
+#include "neural/training/checkpoint.h"
 #include "tests/neural/photo/toy_photo_training.h"
 
 namespace bodyloom::guess_texture_test {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/neural/photo/people_data.h"
+#include "pipelines/neural/photo/people_data.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
-#include "bodyloom/data_tools/synthesis/people/make_multi_person_dataset.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/perturbed_motion.h"
+#include "data_tools/synthesis/people/make_multi_person_dataset.h"
 #include "tests/support/scratch_folder.h"
 
 namespace bodyloom::people_data_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/training/photo_partner.h"
+#include "neural/training/photo_partner.h"
 
 #include <gtest/gtest.h>
 

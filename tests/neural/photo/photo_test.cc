@@ -10,11 +10,11 @@
 #include <limits>
 #include <set>
 
-#include "bodyloom/neural/networks/architecture_card.h"
-#include "bodyloom/neural/photo/photo_batch.h"
-#include "bodyloom/neural/photo/photo_losses.h"
-#include "bodyloom/neural/photo/photo_model.h"
-#include "bodyloom/neural/photo/photo_scores.h"
+#include "neural/networks/architecture_card.h"
+#include "neural/photo/photo_batch.h"
+#include "neural/photo/photo_losses.h"
+#include "neural/photo/photo_model.h"
+#include "neural/photo/photo_scores.h"
 #include "tests/neural/photo/toy_photos.h"
 #include "tests/support/gradient_check.h"
 

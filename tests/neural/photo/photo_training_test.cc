@@ -12,11 +12,11 @@
 #include <sstream>
 #include <string>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/neural/base/runtime.h"
-#include "bodyloom/neural/networks/sphereface.h"
-#include "bodyloom/neural/photo/photo_renderer.h"
-#include "bodyloom/neural/photo/photo_window.h"
+#include "geometry/base/check.h"
+#include "neural/base/runtime.h"
+#include "neural/networks/sphereface.h"
+#include "neural/photo/photo_renderer.h"
+#include "neural/photo/photo_window.h"
 #include "tests/neural/photo/toy_photo_training.h"
 #include "tests/neural/training/last_metrics.h"
 

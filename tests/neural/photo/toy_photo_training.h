@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bodyloom/neural/photo/train_photo.h"
+#include "neural/photo/train_photo.h"
 #include "tests/neural/photo/toy_photos.h"
 #include "tests/support/test_files.h"
 

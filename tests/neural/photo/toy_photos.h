@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "bodyloom/neural/photo/photo_config.h"
-#include "bodyloom/render/texture/photo_frame.h"
+#include "neural/photo/photo_config.h"
+#include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/neural/training/optimizers.h"
+#include "neural/training/optimizers.h"
 
 #include <gtest/gtest.h>
 

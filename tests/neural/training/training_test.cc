@@ -10,10 +10,10 @@
 #include <fstream>
 #include <functional>
 
-#include "bodyloom/neural/networks/unet.h"
-#include "bodyloom/neural/training/checkpoint.h"
-#include "bodyloom/neural/training/optimizers.h"
-#include "bodyloom/neural/training/run_files.h"
+#include "neural/networks/unet.h"
+#include "neural/training/checkpoint.h"
+#include "neural/training/optimizers.h"
+#include "neural/training/run_files.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom::training_test {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bodyloom/neural/training/optimizers.h"
+#include "neural/training/optimizers.h"
 
 namespace bodyloom::weight_average_test {
 namespace {

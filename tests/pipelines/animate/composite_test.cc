@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rendered person in front of something, at the networks' size and enlarged.
-#include "bodyloom/pipelines/animate/background.h"
+#include "pipelines/animate/background.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/animate/motion_errors.h"
+#include "pipelines/animate/motion_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scores of a run in one line.
-#include "bodyloom/pipelines/animate/motion_errors.h"
+#include "pipelines/animate/motion_errors.h"
 
 #include <gtest/gtest.h>
 

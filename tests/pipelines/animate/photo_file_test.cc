@@ -7,12 +7,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/photo_file.h"
-#include "bodyloom/data_tools/video/video_writer.h"
-#include "bodyloom/pipelines/animate/person_segmentation.h"
-#include "bodyloom/pipelines/animate/photo_pictures.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/photo_file.h"
+#include "data_tools/video/video_writer.h"
+#include "pipelines/animate/person_segmentation.h"
+#include "pipelines/animate/photo_pictures.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/odd_pictures.h"

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rendered clip written as a single-person dataset.
-#include "bodyloom/pipelines/animate/background.h"
+#include "pipelines/animate/background.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
 #include "tests/support/test_files.h"
 
 namespace bodyloom::rendered_dataset_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/batch/batch_clip.h"
+#include "pipelines/batch/batch_clip.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/pipelines/track/track_clip.h"
+#include "pipelines/track/track_clip.h"
 #include "tests/pipelines/batch/batch_fixture.h"
 
 namespace bodyloom::batch_clip_test {

@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/pipelines/batch/batch_clip.h"
-#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
+#include "data_tools/formats/atomic_file.h"
+#include "pipelines/batch/batch_clip.h"
+#include "pipelines/synthesis/synthesize_clip.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/batch/manifest.h"
+#include "pipelines/batch/manifest.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "bodyloom/geometry/base/callbacks.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom::manifest_test {
 namespace {

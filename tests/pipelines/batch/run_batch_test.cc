@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/batch/run_batch.h"
+#include "pipelines/batch/run_batch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/detect/cut_masks.h"
+#include "pipelines/detect/cut_masks.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/video/image_file.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/tracking/detection/masked_clip.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The pose detector on real video. Skipped where the recordings or the networks (./dev models) are missing.
-#include "bodyloom/pipelines/detect/detect_clip.h"
+#include "pipelines/detect/detect_clip.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/observations/part_labels.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Dense keypoints of a clip by a detector that is scripted here: a person is a rectangle of one grey, and each shows
 /// one chart.
-#include "bodyloom/pipelines/detect/detect_dense.h"
+#include "pipelines/detect/detect_dense.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/detect/detect_clip.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/observations/observations_npz.h"
+#include "data_tools/video/image_file.h"
+#include "pipelines/detect/detect_clip.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 

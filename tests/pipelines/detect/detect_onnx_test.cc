@@ -9,12 +9,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/detect/detect_clip.h"
-#include "bodyloom/pipelines/track/track_clip.h"
-#include "bodyloom/pipelines/track/track_people_clip.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/video/image_file.h"
+#include "pipelines/detect/detect_clip.h"
+#include "pipelines/track/track_clip.h"
+#include "pipelines/track/track_people_clip.h"
 #include "tests/data_tools/detection/small_onnx.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"

@@ -9,11 +9,11 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/tracking/detection/pose_detector.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/video/video_reader.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
+#include "tracking/detection/pose_detector.h"
 
 namespace bodyloom::original_smoothing_test {
 namespace {

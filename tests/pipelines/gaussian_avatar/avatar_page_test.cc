@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long clips are thinned; what the page shows is tests/page/avatar_test.py's.
-#include "bodyloom/pipelines/gaussian_avatar/avatar_page.h"
+#include "pipelines/gaussian_avatar/avatar_page.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/gaussian_avatar/avatar_scores.h"
+#include "pipelines/gaussian_avatar/avatar_scores.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "bodyloom/data_tools/evaluation/ssim.h"
+#include "data_tools/evaluation/ssim.h"
 
 namespace bodyloom::avatar_scores_test {
 namespace {

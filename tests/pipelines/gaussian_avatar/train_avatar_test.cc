@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A synthetic person learned from a dataset and from a video, gone on with, and shown.
-#include "bodyloom/pipelines/gaussian_avatar/train_avatar.h"
+#include "pipelines/gaussian_avatar/train_avatar.h"
 
 #include <gtest/gtest.h>
 
@@ -9,23 +9,23 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "bodyloom/data_tools/avatar/avatar_file.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/json_reader.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/pipelines/clip_span.h"
-#include "bodyloom/pipelines/gaussian_avatar/animate_avatar.h"
-#include "bodyloom/pipelines/gaussian_avatar/shown_avatar.h"
-#include "bodyloom/pipelines/synthesis/synthesize_person.h"
-#include "bodyloom/render/gaussian_avatar/avatar_image.h"
-#include "bodyloom/render/gaussian_avatar/learning/pose_refiner.h"
+#include "data_tools/avatar/avatar_file.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
+#include "pipelines/clip_span.h"
+#include "pipelines/gaussian_avatar/animate_avatar.h"
+#include "pipelines/gaussian_avatar/shown_avatar.h"
+#include "pipelines/synthesis/synthesize_person.h"
+#include "render/gaussian_avatar/avatar_image.h"
+#include "render/gaussian_avatar/learning/pose_refiner.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/render/splat/same_bytes.h"
 

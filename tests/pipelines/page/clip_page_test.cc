@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/page/clip_page.h"
+#include "pipelines/page/clip_page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bodyloom/pipelines/page/report_page.h"
+#include "pipelines/page/report_page.h"
 
 namespace bodyloom::clip_page_test {
 namespace {

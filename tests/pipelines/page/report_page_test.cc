@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/page/report_page.h"
+#include "pipelines/page/report_page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

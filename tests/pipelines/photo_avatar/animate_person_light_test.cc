@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <string>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/pipelines/photo_avatar/animate_person.h"
-#include "bodyloom/pipelines/photo_avatar/person_folder.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "pipelines/photo_avatar/animate_person.h"
+#include "pipelines/photo_avatar/person_folder.h"
+#include "render/view/overlay.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 

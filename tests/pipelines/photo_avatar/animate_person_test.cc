@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A real person's photo, moved. Skipped where the recording or the pose detector's networks (./dev models) are
 /// missing, but for the requests that are refused before either is needed.
-#include "bodyloom/pipelines/photo_avatar/animate_person.h"
+#include "pipelines/photo_avatar/animate_person.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,12 +12,12 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/pipelines/photo_avatar/person_folder.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/photo_avatar/person_folder.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"

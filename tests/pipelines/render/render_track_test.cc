@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/render/render_track.h"
+#include "pipelines/render/render_track.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "data_tools/formats/atomic_file.h"
+#include "geometry/scene/camera_path.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 

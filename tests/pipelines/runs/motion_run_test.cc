@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/runs/motion_run.h"
+#include "pipelines/runs/motion_run.h"
 
 #include <gmock/gmock.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/pipelines/runs/run_config.h"
+#include "pipelines/runs/run_config.h"
 #include "tests/support/scratch_folder.h"
 
 namespace bodyloom::motion_run_test {

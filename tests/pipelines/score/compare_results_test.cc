@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/compare_results.h"
+#include "pipelines/score/compare_results.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/video/image_file.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 #include "tests/support/test_files.h"

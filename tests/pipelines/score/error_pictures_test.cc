@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/compare_results.h"
+#include "pipelines/score/compare_results.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <random>
 
-#include "bodyloom/data_tools/evaluation/image_metrics.h"
-#include "bodyloom/data_tools/video/image_file.h"
+#include "data_tools/evaluation/image_metrics.h"
+#include "data_tools/video/image_file.h"
 #include "tests/support/scratch_folder.h"
 
 namespace bodyloom::error_pictures_test {

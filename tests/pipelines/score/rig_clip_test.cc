@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/score/rig_clip.h"
+#include "pipelines/score/rig_clip.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/data_tools/evaluation/triangulated_clip.h"
-#include "bodyloom/data_tools/observations/load_cameras.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/geometry/base/callbacks.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/pipelines/score/evaluate_track.h"
+#include "data_tools/evaluation/triangulated_clip.h"
+#include "data_tools/observations/load_cameras.h"
+#include "data_tools/observations/observations_npz.h"
+#include "geometry/base/callbacks.h"
+#include "geometry/math/rotation.h"
+#include "pipelines/score/evaluate_track.h"
 #include "tests/support/scratch_folder.h"
 
 namespace bodyloom::rig_clip_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/initial_poses.h"
+#include "pipelines/track/initial_poses.h"
 
 #include <gmock/gmock.h>
 
@@ -7,15 +7,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/body/body_landmarks.h"
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/estimates/estimate_arrays.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
-#include "bodyloom/pipelines/track/track_clip.h"
+#include "data_tools/body/body_landmarks.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/estimates/estimate_arrays.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/observations_npz.h"
+#include "pipelines/synthesis/synthesize_clip.h"
+#include "pipelines/track/track_clip.h"
 #include "tests/data_tools/estimates/estimate_files.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/paths.h"

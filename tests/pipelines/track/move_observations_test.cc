@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/detected_people.h"
+#include "pipelines/track/detected_people.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a focal length that is not known is looked for.
-#include "bodyloom/pipelines/track/scene_inputs.h"
+#include "pipelines/track/scene_inputs.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/base/callbacks.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/base/callbacks.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/exif_maker.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_clip.h"
+#include "pipelines/track/track_clip.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/formats/npz.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/observations_npz.h"
-#include "bodyloom/pipelines/export/export_track.h"
-#include "bodyloom/pipelines/page/report_page.h"
-#include "bodyloom/pipelines/score/evaluate_track.h"
-#include "bodyloom/pipelines/synthesis/synthesize_clip.h"
+#include "data_tools/formats/npz.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/observations_npz.h"
+#include "pipelines/export/export_track.h"
+#include "pipelines/page/report_page.h"
+#include "pipelines/score/evaluate_track.h"
+#include "pipelines/synthesis/synthesize_clip.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Everybody in a real video. Skipped where the recordings or the networks (./dev models) are missing.
-#include "bodyloom/pipelines/track/track_people_clip.h"
+#include "pipelines/track/track_people_clip.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,12 +10,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/observations/load_detections.h"
-#include "bodyloom/data_tools/observations/part_labels.h"
-#include "bodyloom/data_tools/video/video_reader.h"
-#include "bodyloom/geometry/base/check.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/observations/load_detections.h"
+#include "data_tools/observations/part_labels.h"
+#include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_report.h"
+#include "pipelines/track/track_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

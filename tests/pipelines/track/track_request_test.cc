@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/track/track_request.h"
+#include "pipelines/track/track_request.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bodyloom/geometry/base/callbacks.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom::track_request_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/pipelines/video/track_video.h"
+#include "pipelines/video/track_video.h"
 
 #include <gtest/gtest.h>
 

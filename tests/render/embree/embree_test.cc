@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
+#include "render/raster/visibility_buffer.h"
 #include "tests/support/embree_twin.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The masks are of a skirt in motion, whose cloth is finer, heavier and stiffer than the fit's.
-#include "bodyloom/render/garment/clip_clothes.h"
+#include "render/garment/clip_clothes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "bodyloom/render/gaussian_avatar/worn_garment.h"
+#include "render/gaussian_avatar/worn_garment.h"
 #include "tests/render/garment/skirt_scene.h"
 
 namespace bodyloom::clip_clothes_test {

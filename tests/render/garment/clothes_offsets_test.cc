@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/clothes_offsets.h"
+#include "render/garment/clothes_offsets.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/render/texture/body_regions.h"
+#include "geometry/base/percentile.h"
+#include "geometry/body/normals.h"
+#include "render/texture/body_regions.h"
 #include "tests/render/garment/person_scene.h"
 
 namespace bodyloom::clothes_offsets_test {

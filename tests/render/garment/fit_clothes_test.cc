@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The masks are of garments whose cloth is finer, heavier and stiffer than the fit's, at widths and lengths between
 /// those it tries.
-#include "bodyloom/render/garment/fit_clothes.h"
+#include "render/garment/fit_clothes.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/render/view/overlay.h"
+#include "geometry/body/normals.h"
+#include "render/view/overlay.h"
 #include "tests/render/garment/skirt_scene.h"
 
 namespace bodyloom::fit_clothes_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/fit_clothes.h"
+#include "render/garment/fit_clothes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/garment/person_cloth.h"
+#include "render/garment/person_cloth.h"
 
 #include <gtest/gtest.h>
 
@@ -9,15 +9,15 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/pipelines/photo_avatar/animate_person.h"
-#include "bodyloom/pipelines/photo_avatar/person_folder.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/motion/track_io.h"
+#include "geometry/cloth/body_with_garment.h"
+#include "geometry/cloth/cloth_run.h"
+#include "geometry/scene/track_edits.h"
+#include "pipelines/photo_avatar/animate_person.h"
+#include "pipelines/photo_avatar/person_folder.h"
+#include "render/view/overlay.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 

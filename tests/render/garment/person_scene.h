@@ -2,12 +2,12 @@
 /// The built-in body before a camera, and the mask of whatever is drawn there.
 #pragma once
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera.h"
+#include "geometry/scene/observations.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 

@@ -4,12 +4,12 @@
 
 #include <Eigen/Geometry>
 
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/geometry/cloth/cloth_body.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/scene/track.h"
-#include "bodyloom/render/garment/fit_clothes.h"
-#include "bodyloom/render/view/overlay.h"
+#include "geometry/cloth/body_with_garment.h"
+#include "geometry/cloth/cloth_body.h"
+#include "geometry/cloth/cloth_run.h"
+#include "geometry/scene/track.h"
+#include "render/garment/fit_clothes.h"
+#include "render/view/overlay.h"
 #include "tests/render/garment/person_scene.h"
 
 namespace bodyloom {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gaussians on a garment, and the bones that carry them.
-#include "bodyloom/render/gaussian_avatar/cloth_gaussians.h"
+#include "render/gaussian_avatar/cloth_gaussians.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/render/gaussian_avatar/cloth_bones.h"
-#include "bodyloom/render/gaussian_avatar/pose_gaussians.h"
+#include "geometry/math/rotation.h"
+#include "render/gaussian_avatar/cloth_bones.h"
+#include "render/gaussian_avatar/pose_gaussians.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

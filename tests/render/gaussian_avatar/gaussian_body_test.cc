@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/gaussian_body.h"
+#include "render/gaussian_avatar/gaussian_body.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 /// A posed toy body with Gaussians on it.
 #pragma once
 
-#include "bodyloom/render/gaussian_avatar/pose_gaussians.h"
+#include "render/gaussian_avatar/pose_gaussians.h"
 #include "tests/support/avatar_twin.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Posed Gaussians against their twin and the posed body, and what degenerate numbers do.
-#include "bodyloom/render/gaussian_avatar/pose_gaussians.h"
+#include "render/gaussian_avatar/pose_gaussians.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/render/lighting/sh_lighting.h"
-#include "bodyloom/render/splat/project_gaussians.h"
+#include "render/lighting/sh_lighting.h"
+#include "render/splat/project_gaussians.h"
 #include "tests/render/gaussian_avatar/person_scene.h"
 #include "tests/render/splat/same_bytes.h"
 

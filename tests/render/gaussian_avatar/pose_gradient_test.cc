@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Derivatives through posing against automatic ones of the twin, which are checked against differences; then the whole
 // way from a picture to everything that can be learned.
-#include "bodyloom/render/gaussian_avatar/pose_gradient.h"
+#include "render/gaussian_avatar/pose_gradient.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <functional>
 #include <limits>
 
-#include "bodyloom/render/splat/project_gaussians.h"
-#include "bodyloom/render/splat/splat_gradient.h"
+#include "render/splat/project_gaussians.h"
+#include "render/splat/splat_gradient.h"
 #include "tests/render/gaussian_avatar/person_scene.h"
 #include "tests/render/splat/same_bytes.h"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/skin_gaussians.h"
+#include "render/gaussian_avatar/skin_gaussians.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/render/gaussian_avatar/pose_gaussians.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/splat/project_gaussians.h"
-#include "bodyloom/render/splat/splat_picture.h"
+#include "render/gaussian_avatar/pose_gaussians.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/splat/project_gaussians.h"
+#include "render/splat/splat_picture.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/image/palette.h"
+#include "render/image/palette.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/geometry/base/percentile.h"
+#include "geometry/base/percentile.h"
 
 namespace bodyloom::median_colour_test {
 namespace {

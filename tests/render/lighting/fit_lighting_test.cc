@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/lighting/fit_lighting.h"
+#include "render/lighting/fit_lighting.h"
 
 #include <ceres/gradient_checker.h>
 #include <gtest/gtest.h>

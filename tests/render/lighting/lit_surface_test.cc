@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A sphere and an open sheet, whose normals and shading are known in closed form.
-#include "bodyloom/render/lighting/lit_surface.h"
+#include "render/lighting/lit_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
+#include "render/view/overlay.h"
 #include "tests/support/meshes.h"
 
 namespace bodyloom::lit_surface_test {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/lighting/fit_lighting.h"
-#include "bodyloom/render/lighting/sh_lighting.h"
-#include "bodyloom/render/raster/resolve_pixels.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
+#include "render/lighting/fit_lighting.h"
+#include "render/lighting/sh_lighting.h"
+#include "render/raster/resolve_pixels.h"
+#include "render/raster/visibility_buffer.h"
 
 namespace bodyloom::relight_person_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/lighting/sh_lighting.h"
+#include "render/lighting/sh_lighting.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/photo_avatar/draw_person.h"
+#include "render/photo_avatar/draw_person.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "bodyloom/render/view/overlay.h"
+#include "render/view/overlay.h"
 #include "tests/support/coloured_person.h"
 #include "tests/support/short_track.h"
 

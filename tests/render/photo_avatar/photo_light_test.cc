@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A body in a light that is known, photographed by the renderer itself.
-#include "bodyloom/render/photo_avatar/photo_person_builder.h"
+#include "render/photo_avatar/photo_person_builder.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/photo_avatar/photo_person.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/body/posed_body.h"
+#include "render/photo_avatar/photo_person.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom::photo_light_test {
 namespace {

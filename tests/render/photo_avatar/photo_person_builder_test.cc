@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A bare body of two colours, photographed by the renderer itself: the person made from it is that body again.
-#include "bodyloom/render/photo_avatar/photo_person_builder.h"
+#include "render/photo_avatar/photo_person_builder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,11 +13,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/render/photo_avatar/draw_person.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track_edits.h"
+#include "render/photo_avatar/draw_person.h"
+#include "render/view/overlay.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom::photo_person_builder_test {

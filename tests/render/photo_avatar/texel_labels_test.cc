@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The built-in body, its texels seen in a picture that is the atlas itself.
-#include "bodyloom/render/photo_avatar/texel_labels.h"
+#include "render/photo_avatar/texel_labels.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/geometry/body/posed_body.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/body/posed_body.h"
 
 namespace bodyloom::texel_labels_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Two people of one colour a label: who wears what is known texel by texel.
-#include "bodyloom/render/photo_avatar/wear_clothes.h"
+#include "render/photo_avatar/wear_clothes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,19 +13,19 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/data_tools/motion/track_io.h"
-#include "bodyloom/data_tools/video/image_file.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/cloth/body_with_garment.h"
-#include "bodyloom/geometry/scene/track_edits.h"
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/pipelines/photo_avatar/animate_person.h"
-#include "bodyloom/pipelines/photo_avatar/person_folder.h"
-#include "bodyloom/render/garment/person_cloth.h"
-#include "bodyloom/render/texture/body_regions.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "data_tools/motion/track_io.h"
+#include "data_tools/video/image_file.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/cloth/body_with_garment.h"
+#include "geometry/scene/track_edits.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "pipelines/photo_avatar/animate_person.h"
+#include "pipelines/photo_avatar/person_folder.h"
+#include "render/garment/person_cloth.h"
+#include "render/texture/body_regions.h"
+#include "render/view/overlay.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/short_track.h"
 #include "tests/support/toy_body.h"

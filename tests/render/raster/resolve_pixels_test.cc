@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/resolve_pixels.h"
+#include "render/raster/resolve_pixels.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/render/raster/visible_points.h"
-#include "bodyloom/render/view/shaded_mesh.h"
+#include "geometry/math/rotation.h"
+#include "render/raster/visible_points.h"
+#include "render/view/shaded_mesh.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/visibility_buffer.h"
+#include "render/raster/visibility_buffer.h"
 
 #include <gtest/gtest.h>
 

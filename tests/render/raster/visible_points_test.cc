@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/raster/visible_points.h"
+#include "render/raster/visible_points.h"
 
 #include <gtest/gtest.h>
 

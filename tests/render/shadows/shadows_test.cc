@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/render/shadows/shadow_map.h"
+#include "render/shadows/shadow_map.h"
 
 namespace bodyloom::shadows_test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Projection against its twin and closed forms, its derivatives against automatic ones and differences, and what is not
 // drawn.
-#include "bodyloom/render/splat/project_gaussians.h"
+#include "render/splat/project_gaussians.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <functional>
 
-#include "bodyloom/render/raster/raster_simd.h"
-#include "bodyloom/render/splat/float_columns.h"
+#include "render/raster/raster_simd.h"
+#include "render/splat/float_columns.h"
 
 namespace bodyloom {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Derivatives of pictures against automatic ones of the twin, which are checked against differences.
-#include "bodyloom/render/splat/splat_gradient.h"
+#include "render/splat/splat_gradient.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of Gaussians: closed forms, the plainly written twin, and what must not change a byte.
-#include "bodyloom/render/splat/splat_picture.h"
+#include "render/splat/splat_picture.h"
 
 #include <gtest/gtest.h>
 

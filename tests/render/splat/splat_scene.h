@@ -2,7 +2,7 @@
 /// Gaussians on the screen for tests of pictures and their derivatives.
 #pragma once
 
-#include "bodyloom/render/splat/project_gaussians.h"
+#include "render/splat/project_gaussians.h"
 #include "tests/support/splat_twin.h"
 
 namespace bodyloom {

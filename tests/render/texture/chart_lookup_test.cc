@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/chart_lookup.h"
+#include "render/texture/chart_lookup.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "bodyloom/render/raster/visible_points.h"
+#include "render/raster/visible_points.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::chart_lookup_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/texture_extract.h"
+#include "render/texture/texture_extract.h"
 
 #include <gtest/gtest.h>
 

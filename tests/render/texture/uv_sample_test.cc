@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/uv_sample.h"
+#include "render/texture/uv_sample.h"
 
 #include <gtest/gtest.h>
 

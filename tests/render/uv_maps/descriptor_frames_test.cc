@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/uv_maps/descriptor_frames.h"
+#include "render/uv_maps/descriptor_frames.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "bodyloom/data_tools/descriptors/describe_track.h"
-#include "bodyloom/data_tools/formats/npz.h"
+#include "data_tools/descriptors/describe_track.h"
+#include "data_tools/formats/npz.h"
 #include "tests/data_tools/descriptors/swinging_track.h"
 #include "tests/data_tools/formats/temporary_file.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/uv_maps/live_descriptors.h"
+#include "render/uv_maps/live_descriptors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <functional>
 
-#include "bodyloom/geometry/uv_maps/surface_velocity.h"
-#include "bodyloom/render/uv_maps/descriptor_frames.h"
+#include "geometry/uv_maps/surface_velocity.h"
+#include "render/uv_maps/descriptor_frames.h"
 #include "tests/data_tools/descriptors/swinging_track.h"
 
 namespace bodyloom::live_descriptors_test {

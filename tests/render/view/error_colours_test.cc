@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/error_colours.h"
+#include "render/view/error_colours.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/view/attribute_picture.h"
-#include "bodyloom/render/view/caption.h"
+#include "geometry/body/posed_body.h"
+#include "render/view/attribute_picture.h"
+#include "render/view/caption.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::error_colours_test {

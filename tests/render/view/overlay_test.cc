@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/overlay.h"
+#include "render/view/overlay.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/render/view/shaded_mesh.h"
+#include "geometry/body/normals.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
+#include "render/raster/visibility_buffer.h"
+#include "render/view/shaded_mesh.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/people_overlay.h"
+#include "render/view/people_overlay.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/render/image/palette.h"
+#include "render/image/palette.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

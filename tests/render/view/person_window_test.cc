@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/person_window.h"
+#include "render/view/person_window.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/shaded_mesh.h"
+#include "render/view/shaded_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "bodyloom/render/raster/raster_simd.h"
-#include "bodyloom/render/view/overlay.h"
-#include "bodyloom/render/view/shade_simd.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "render/raster/raster_simd.h"
+#include "render/view/overlay.h"
+#include "render/view/shade_simd.h"
+#include "render/view/view_camera.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

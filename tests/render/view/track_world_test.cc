@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/view/floor.h"
+#include "render/view/floor.h"
 
 #include <gtest/gtest.h>
 
-#include "bodyloom/render/view/follow_view.h"
+#include "render/view/follow_view.h"
 
 namespace bodyloom::track_world_test {
 namespace {

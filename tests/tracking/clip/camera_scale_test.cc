@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/camera_scale.h"
+#include "tracking/clip/camera_scale.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom::camera_scale_test {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // How lively a motion is, against a joint that turns with a known acceleration.
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "tracking/clip/clip_fit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/frame_scene.h"
 
 namespace bodyloom::motion_level_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/clip/uncertainty.h"
+#include "tracking/clip/uncertainty.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,20 +8,20 @@
 #include <Eigen/LU>
 #include <random>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/initialiser.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
-#include "bodyloom/tracking/terms/landmarks.h"
-#include "bodyloom/tracking/terms/straight_knees.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/body_model.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/solvers/solve_sequence.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/initialiser.h"
+#include "tracking/terms/joint_limits.h"
+#include "tracking/terms/landmarks.h"
+#include "tracking/terms/straight_knees.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom::uncertainty_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/background_cut.h"
+#include "tracking/detection/background_cut.h"
 
 #include <gtest/gtest.h>
 

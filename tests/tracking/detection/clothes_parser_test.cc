@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/clothes_parser.h"
+#include "tracking/detection/clothes_parser.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/pipelines/photo_avatar/make_photo_person.h"
-#include "bodyloom/render/view/overlay.h"
-#include "bodyloom/render/view/view_camera.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "pipelines/photo_avatar/make_photo_person.h"
+#include "render/view/overlay.h"
+#include "render/view/view_camera.h"
 #include "tests/support/random_picture_unet.h"
 #include "tests/support/short_track.h"
 

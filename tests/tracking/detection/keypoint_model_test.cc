@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// ONNX files of detectors from the file to landmarks in the image; the networks are scripted (small_onnx.h).
-#include "bodyloom/tracking/detection/keypoint_model.h"
+#include "tracking/detection/keypoint_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "bodyloom/tracking/detection/frame_detector.h"
 #include "tests/data_tools/detection/small_onnx.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/scratch_folder.h"
+#include "tracking/detection/frame_detector.h"
 
 namespace bodyloom::keypoint_model_test {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/clothes_parser.h"
+#include "tracking/detection/clothes_parser.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <vector>
 
-#include "bodyloom/data_tools/datasets/single_person_dataset.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom::label_colours_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "bodyloom/render/image/image.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 

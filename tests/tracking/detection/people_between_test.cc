@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/people_between.h"
+#include "tracking/detection/people_between.h"
 
 #include <gtest/gtest.h>
 

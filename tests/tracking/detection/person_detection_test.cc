@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/person_detection.h"
+#include "tracking/detection/person_detection.h"
 
 #include <gmock/gmock.h>
 

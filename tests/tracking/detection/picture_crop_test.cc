@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/picture_crop.h"
+#include "tracking/detection/picture_crop.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/pose_landmarks.h"
+#include "tracking/detection/pose_landmarks.h"
 
 #include <gmock/gmock.h>
 

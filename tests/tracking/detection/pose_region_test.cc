@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/pose_region.h"
+#include "tracking/detection/pose_region.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/still_background.h"
+#include "tracking/detection/still_background.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/keypoint_model.h"
+#include "tracking/detection/keypoint_model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The vertical and the ground from feet whose truth is known: tilted cameras, noise in depth, and clips without ground.
-#include "bodyloom/tracking/initialise/ground_plane.h"
+#include "tracking/initialise/ground_plane.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom::ground_plane_test {
 namespace {

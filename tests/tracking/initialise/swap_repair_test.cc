@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/initialise/swap_repair.h"
+#include "tracking/initialise/swap_repair.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From 2D landmarks to lifted frames: phases, mirror, cuts, the mean of hypotheses, odd clips. The network is random
 // here: what it predicts is another test's business.
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
+#include "tracking/lifter/lift_keypoints.h"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,11 @@
 #include <limits>
 #include <random>
 
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/lifter/lifter_input.h"
 
 namespace bodyloom::lift_keypoints_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/live/live_tracker.h"
+#include "tracking/live/live_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
-#include "bodyloom/tracking/live/live_history.h"
-#include "bodyloom/tracking/live/track_live.h"
-#include "bodyloom/tracking/terms/landmarks.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/live/live_history.h"
+#include "tracking/live/track_live.h"
+#include "tracking/terms/landmarks.h"
 
 namespace bodyloom::live_tracker_test {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Somebody who stands behind somebody else, on bodies whose places are known.
-#include "bodyloom/tracking/people/occlusion.h"
+#include "tracking/people/occlusion.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/view/follow_view.h"
-#include "bodyloom/render/view/overlay.h"
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
+#include "render/view/follow_view.h"
+#include "render/view/overlay.h"
 
 namespace bodyloom::occlusion_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two people before one camera whose focal length nobody says.
-#include "bodyloom/tracking/people/track_people.h"
+#include "tracking/people/track_people.h"
 
 #include <gtest/gtest.h>
 
@@ -8,16 +8,16 @@
 #include <random>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/problem/stature.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/problem/stature.h"
 
 namespace bodyloom::track_people_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/problem/camera_knowledge.h"
+#include "tracking/problem/camera_knowledge.h"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/lifter_weights_io.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/clip/uncertainty.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/lifter_weights_io.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/clip/uncertainty.h"
 
 namespace bodyloom::focal_length_test {
 namespace {

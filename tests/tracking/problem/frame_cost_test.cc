@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every term of the frame cost against automatic differentiation of an independent twin, to 1e-9 relative.
-#include "bodyloom/tracking/problem/frame_cost.h"
+#include "tracking/problem/frame_cost.h"
 
 #include <gtest/gtest.h>
 
@@ -12,18 +12,18 @@
 #include <random>
 #include <string>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/panel_simd.h"
-#include "bodyloom/tracking/problem/robust.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/initialiser.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
-#include "bodyloom/tracking/terms/landmarks.h"
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
-#include "bodyloom/tracking/terms/straight_knees.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
+#include "tracking/problem/panel_simd.h"
+#include "tracking/problem/robust.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/initialiser.h"
+#include "tracking/terms/joint_limits.h"
+#include "tracking/terms/landmarks.h"
+#include "tracking/terms/pose_prior/pose_prior.h"
+#include "tracking/terms/straight_knees.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom::frame_cost_test {
 namespace {

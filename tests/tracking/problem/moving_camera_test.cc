@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A frame whose camera moves: the change of variables against the same frame seen by a camera that stands still, its
 // derivatives against central differences, and both engines on a clip.
-#include "bodyloom/tracking/problem/moving_camera.h"
+#include "tracking/problem/moving_camera.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 #include "tests/support/frame_scene.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/solvers/solve_sequence.h"
 
 namespace bodyloom::moving_camera_test {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies of a stature that is given: the built-in body, whole.
-#include "bodyloom/tracking/problem/stature.h"
+#include "tracking/problem/stature.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
+#include "data_tools/body/builtin_body.h"
 #include "tests/support/toy_body.h"
+#include "tracking/problem/sequence_problem.h"
 
 namespace bodyloom::stature_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Users' own cost functions: derivatives through the problem, both engines, what they do to a track, what is refused.
-#include "bodyloom/tracking/problem/user_term.h"
+#include "tracking/problem/user_term.h"
 
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/dynamic_autodiff_cost_function.h>
@@ -15,19 +15,19 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/live/track_live.h"
-#include "bodyloom/tracking/problem/moving_camera.h"
-#include "bodyloom/tracking/problem/user_cost.h"
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/scene/camera_path.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/live/track_live.h"
+#include "tracking/problem/moving_camera.h"
+#include "tracking/problem/user_cost.h"
+#include "tracking/solvers/chain/chain_problem.h"
+#include "tracking/solvers/solve_sequence.h"
 
 namespace bodyloom::user_term_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sizes of people from feet on one plane: closed forms, a search over all sizes, and scenes that cannot tell.
-#include "bodyloom/tracking/room/common_ground.h"
+#include "tracking/room/common_ground.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/initialise/ground_plane.h"
-#include "bodyloom/tracking/solvers/residuals/ceres_functions.h"
+#include "geometry/math/rotation.h"
+#include "tracking/initialise/ground_plane.h"
+#include "tracking/solvers/residuals/ceres_functions.h"
 
 namespace bodyloom::common_ground_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes joined from people's own fits: closed forms.
-#include "bodyloom/tracking/room/shared_scene.h"
+#include "tracking/room/shared_scene.h"
 
 #include <gtest/gtest.h>
 

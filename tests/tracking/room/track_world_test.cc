@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/room/shared_scene.h"
+#include "tracking/room/shared_scene.h"
 
 #include <gtest/gtest.h>
 

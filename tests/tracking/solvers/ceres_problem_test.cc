@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ceres::Problem of a clip: the same cost, gradient and covariance as the chain engine has, by term and by name.
-#include "bodyloom/tracking/solvers/ceres_problem.h"
+#include "tracking/solvers/ceres_problem.h"
 
 #include <ceres/ceres.h>
 #include <gmock/gmock.h>
@@ -12,19 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/build_ceres_problem.h"
-#include "bodyloom/tracking/clip/clip_fit.h"
-#include "bodyloom/tracking/problem/moving_camera.h"
-#include "bodyloom/tracking/solvers/chain/chain_inverse.h"
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
-#include "bodyloom/tracking/solvers/term_costs.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/scene/camera_path.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/build_ceres_problem.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/problem/moving_camera.h"
+#include "tracking/solvers/chain/chain_inverse.h"
+#include "tracking/solvers/chain/chain_problem.h"
+#include "tracking/solvers/solve_sequence.h"
+#include "tracking/solvers/term_costs.h"
 
 namespace bodyloom::ceres_problem_test {
 namespace {

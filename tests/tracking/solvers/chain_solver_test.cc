@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/chain_solver.h"
+#include "tracking/solvers/chain_solver.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/tracking/solvers/solve_sequence.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/initialiser.h"
-#include "bodyloom/tracking/terms/landmarks.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/solvers/solve_sequence.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/initialiser.h"
+#include "tracking/terms/landmarks.h"
 
 namespace bodyloom::chain_solver_test {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/fixed_lag.h"
+#include "tracking/solvers/fixed_lag.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 
-#include "bodyloom/tracking/solvers/chain/chain_inverse.h"
-#include "bodyloom/tracking/solvers/solve_sequence.h"
-#include "bodyloom/tracking/terms/initialiser.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
+#include "tracking/solvers/chain/chain_inverse.h"
+#include "tracking/solvers/solve_sequence.h"
+#include "tracking/terms/initialiser.h"
 
 namespace bodyloom::fixed_lag_test {
 namespace {

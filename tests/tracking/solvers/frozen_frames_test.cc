@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/chain_solver.h"
+#include "tracking/solvers/chain_solver.h"
 
 #include <gtest/gtest.h>
 

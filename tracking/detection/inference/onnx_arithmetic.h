@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/onnx_model.h"
+#include "tracking/detection/inference/onnx_model.h"
 
 namespace bodyloom {
 

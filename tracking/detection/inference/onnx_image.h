@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "bodyloom/tracking/detection/inference/onnx_arithmetic.h"
+#include "tracking/detection/inference/onnx_arithmetic.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/onnx_model.h"
+#include "tracking/detection/inference/onnx_model.h"
 
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/detection/inference/protobuf.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
+#include "tracking/detection/inference/protobuf.h"
 
 namespace bodyloom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/onnx_network.h"
+#include "tracking/detection/inference/onnx_network.h"
 
 #include <algorithm>
 #include <dnnl.hpp>
@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/detection/inference/one_thread.h"
-#include "bodyloom/tracking/detection/inference/onnx_arithmetic.h"
-#include "bodyloom/tracking/detection/inference/onnx_image.h"
-#include "bodyloom/tracking/detection/inference/onnx_products.h"
-#include "bodyloom/tracking/detection/inference/onnx_rearrangement.h"
+#include "geometry/base/check.h"
+#include "tracking/detection/inference/one_thread.h"
+#include "tracking/detection/inference/onnx_arithmetic.h"
+#include "tracking/detection/inference/onnx_image.h"
+#include "tracking/detection/inference/onnx_products.h"
+#include "tracking/detection/inference/onnx_rearrangement.h"
 
 namespace bodyloom {
 namespace {

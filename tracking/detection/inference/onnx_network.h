@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/onnx_model.h"
+#include "tracking/detection/inference/onnx_model.h"
 
 namespace bodyloom {
 

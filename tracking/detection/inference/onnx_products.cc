@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/onnx_products.h"
+#include "tracking/detection/inference/onnx_products.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/detection/inference/onnx_arithmetic.h"
-#include "bodyloom/tracking/detection/inference/onnx_image.h"
+#include "geometry/base/check.h"
+#include "tracking/detection/inference/onnx_arithmetic.h"
+#include "tracking/detection/inference/onnx_image.h"
 
 namespace bodyloom {
 namespace {

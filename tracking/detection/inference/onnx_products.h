@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/onnx_arithmetic.h"
+#include "tracking/detection/inference/onnx_arithmetic.h"
 
 namespace bodyloom {
 

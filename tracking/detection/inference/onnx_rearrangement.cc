@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/onnx_rearrangement.h"
+#include "tracking/detection/inference/onnx_rearrangement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/detection/inference/onnx_arithmetic.h"
+#include "geometry/base/check.h"
+#include "tracking/detection/inference/onnx_arithmetic.h"
 
 namespace bodyloom {
 namespace {

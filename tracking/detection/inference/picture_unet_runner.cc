@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/picture_unet_runner.h"
+#include "tracking/detection/inference/picture_unet_runner.h"
 
 #include <algorithm>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/tracking/detection/inference/tflite_model.h"
+#include "geometry/base/check.h"
+#include "geometry/math/arrays.h"
+#include "tracking/detection/inference/tflite_model.h"
 
 namespace bodyloom {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/render/image/parser_weights.h"
-#include "bodyloom/tracking/detection/inference/tflite_network.h"
+#include "render/image/parser_weights.h"
+#include "tracking/detection/inference/tflite_network.h"
 
 namespace bodyloom {
 

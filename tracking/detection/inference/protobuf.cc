@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/protobuf.h"
+#include "tracking/detection/inference/protobuf.h"
 
 #include <bit>
 #include <cstring>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

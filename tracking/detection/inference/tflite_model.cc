@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/formats/ndarray.h"
-#include "bodyloom/data_tools/formats/printable.h"
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/detection/inference/flatbuffer.h"
-#include "bodyloom/tracking/detection/inference/tflite_shapes.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
+#include "tracking/detection/inference/flatbuffer.h"
+#include "tracking/detection/inference/tflite_shapes.h"
 
 namespace bodyloom {
 namespace {

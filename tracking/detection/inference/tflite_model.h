@@ -45,7 +45,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/flatbuffer.h"
+#include "tracking/detection/inference/flatbuffer.h"
 
 namespace bodyloom {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/inference/tflite_network.h"
 
 #include <algorithm>
 #include <memory>
 #include <unordered_map>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/tracking/detection/inference/one_thread.h"
-#include "bodyloom/tracking/detection/inference/tflite_program.h"
-#include "bodyloom/tracking/detection/inference/tflite_shapes.h"
+#include "geometry/base/check.h"
+#include "geometry/math/arrays.h"
+#include "tracking/detection/inference/one_thread.h"
+#include "tracking/detection/inference/tflite_program.h"
+#include "tracking/detection/inference/tflite_shapes.h"
 
 namespace bodyloom {
 

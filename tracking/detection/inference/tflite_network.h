@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_model.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/tflite_program.h"
+#include "tracking/detection/inference/tflite_program.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/detection/inference/tflite_shapes.h"
+#include "geometry/base/check.h"
+#include "tracking/detection/inference/tflite_shapes.h"
 
 namespace bodyloom {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/tflite_shapes.h"
+#include "tracking/detection/inference/tflite_shapes.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/check.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_model.h"
 
 namespace bodyloom {
 

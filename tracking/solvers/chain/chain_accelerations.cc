@@ -3,10 +3,10 @@
 // three frames or two.
 #include <algorithm>
 
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
+#include "geometry/base/parallel.h"
+#include "geometry/math/rotation.h"
+#include "tracking/solvers/chain/chain_problem.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
 
 namespace bodyloom {
 

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "tracking/solvers/chain/chain_problem.h"
 
 namespace bodyloom {
 namespace {

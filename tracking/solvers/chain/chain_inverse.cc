@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/chain/chain_inverse.h"
+#include "tracking/solvers/chain/chain_inverse.h"
 
 #include <algorithm>
 #include <memory>
 #include <mutex>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/tracking/problem/panel_simd.h"
-#include "bodyloom/tracking/solvers/chain/chain_factor.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/math/arrays.h"
+#include "tracking/problem/panel_simd.h"
+#include "tracking/solvers/chain/chain_factor.h"
 
 namespace bodyloom {
 

@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "bodyloom/tracking/solvers/chain/chain_factor.h"
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
+#include "tracking/solvers/chain/chain_factor.h"
+#include "tracking/solvers/chain/chain_problem.h"
 
 namespace bodyloom {
 

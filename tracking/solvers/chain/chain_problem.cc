@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
+#include "tracking/solvers/chain/chain_problem.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/panel_simd.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/math/rotation.h"
+#include "tracking/problem/panel_simd.h"
 
 namespace bodyloom {
 

@@ -11,11 +11,11 @@
 #include <mutex>
 #include <vector>
 
-#include "bodyloom/tracking/problem/frame_cost.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/problem/sequence_problem.h"
-#include "bodyloom/tracking/solvers/chain/chain_factor.h"
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/problem/frame_cost.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/problem/sequence_problem.h"
+#include "tracking/solvers/chain/chain_factor.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
 
 namespace bodyloom {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
 
 #include <Eigen/Core>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 

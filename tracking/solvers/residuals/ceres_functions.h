@@ -7,9 +7,9 @@
 #include <ceres/manifold.h>
 #include <utility>
 
-#include "bodyloom/geometry/math/arrays.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/robust.h"
+#include "geometry/math/arrays.h"
+#include "geometry/math/rotation.h"
+#include "tracking/problem/robust.h"
 
 namespace bodyloom {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/residuals/coupling_cost.h"
+#include "tracking/solvers/residuals/coupling_cost.h"
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "bodyloom/tracking/problem/user_cost.h"
+#include "tracking/problem/user_cost.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/residuals/frame_batch.h"
+#include "tracking/solvers/residuals/frame_batch.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 

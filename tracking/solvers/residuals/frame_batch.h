@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/tracking/problem/frame_cost.h"
+#include "tracking/problem/frame_cost.h"
 
 namespace bodyloom {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/dense/dense.h"
+#include "tracking/terms/dense/dense.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
-#include "bodyloom/tracking/problem/robust.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/terms/dense/dense_points.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/problem/robust.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/terms/dense/dense_points.h"
 
 namespace bodyloom {
 

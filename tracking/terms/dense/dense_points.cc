@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/dense/dense_points.h"
+#include "tracking/terms/dense/dense_points.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/problem/panel_simd.h"
+#include "geometry/base/check.h"
+#include "tracking/problem/panel_simd.h"
 
 namespace bodyloom {
 

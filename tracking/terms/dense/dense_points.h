@@ -12,10 +12,10 @@
 #include <span>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/terms/dense/dense_points_simd.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/observations.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/terms/dense/dense_points_simd.h"
 
 namespace bodyloom {
 

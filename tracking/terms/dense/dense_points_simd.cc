@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/dense/dense_points_simd.h"
+#include "tracking/terms/dense/dense_points_simd.h"
 
 // Instruction sets that add nothing to these loops, and those whose vectors have no size at compile time.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bodyloom/tracking/terms/dense/dense_points_simd.cc"
+#define HWY_TARGET_INCLUDE "tracking/terms/dense/dense_points_simd.cc"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/dense/dense_whitening.h"
+#include "tracking/terms/dense/dense_whitening.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

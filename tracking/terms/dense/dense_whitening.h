@@ -11,10 +11,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
+#include "geometry/scene/observations.h"
+#include "render/raster/visibility_buffer.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/terms/dense/dense.h"
 
 namespace bodyloom {
 

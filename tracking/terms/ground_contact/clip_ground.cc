@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/ground_contact/clip_ground.h"
+#include "tracking/terms/ground_contact/clip_ground.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,13 +7,13 @@
 #include <cmath>
 #include <span>
 
-#include "bodyloom/geometry/scene/camera_path.h"
-#include "bodyloom/tracking/initialise/ground_plane.h"
-#include "bodyloom/tracking/initialise/lifted_start.h"
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
-#include "bodyloom/tracking/terms/upright.h"
+#include "geometry/scene/camera_path.h"
+#include "tracking/initialise/ground_plane.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/terms/ground_contact/ground_contact.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom {
 namespace {

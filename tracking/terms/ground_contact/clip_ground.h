@@ -8,12 +8,12 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/tracking/initialise/ground_plane.h"
-#include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "tracking/initialise/ground_plane.h"
+#include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

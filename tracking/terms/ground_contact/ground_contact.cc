@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
+#include "tracking/terms/ground_contact/ground_contact.h"
 
 #include <cmath>
 
-#include "bodyloom/tracking/initialise/initial_states.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
-#include "bodyloom/tracking/problem/robust.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "tracking/initialise/initial_states.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/problem/robust.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

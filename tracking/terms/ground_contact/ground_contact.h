@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/problem/body_points.h"
-#include "bodyloom/tracking/problem/frame_term.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/initialise/lifted_landmarks.h"
-#include "bodyloom/tracking/lifter/lift_keypoints.h"
-#include "bodyloom/tracking/problem/frame_term.h"
+#include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/lifter/lift_keypoints.h"
+#include "tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

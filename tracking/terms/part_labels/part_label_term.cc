@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/part_labels/part_label_term.h"
+#include "tracking/terms/part_labels/part_label_term.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/render/raster/visible_points.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
+#include "geometry/base/check.h"
+#include "render/raster/visible_points.h"
+#include "tracking/problem/frame_accumulator.h"
 
 namespace bodyloom {
 namespace {

@@ -28,13 +28,13 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/problem/frame_term.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/visible_surface.h"
-#include "bodyloom/tracking/terms/part_labels/distance_field.h"
-#include "bodyloom/tracking/terms/part_labels/part_map.h"
+#include "geometry/scene/observations.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/problem/frame_term.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/visible_surface.h"
+#include "tracking/terms/part_labels/distance_field.h"
+#include "tracking/terms/part_labels/part_map.h"
 
 namespace bodyloom {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/part_labels/part_labels.h"
+#include "tracking/terms/part_labels/part_labels.h"
 
 #include <cmath>
 
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/problem/moving_camera.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/base/parallel.h"
+#include "tracking/problem/moving_camera.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/terms/part_labels/part_label_term.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/terms/part_labels/part_label_term.h"
 
 namespace bodyloom {
 

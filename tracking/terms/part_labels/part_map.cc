@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/part_labels/part_map.h"
+#include "tracking/terms/part_labels/part_map.h"
 
 #include <algorithm>
 #include <array>

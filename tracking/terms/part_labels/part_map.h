@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodyloom/geometry/scene/observations.h"
-#include "bodyloom/render/image/pixel_box.h"
+#include "geometry/scene/observations.h"
+#include "render/image/pixel_box.h"
 
 namespace bodyloom {
 

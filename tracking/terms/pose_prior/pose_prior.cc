@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/pose_prior/pose_prior.h"
+#include "tracking/terms/pose_prior/pose_prior.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,13 +7,13 @@
 #include <limits>
 #include <vector>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 

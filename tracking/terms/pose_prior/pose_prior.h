@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/geometry/body/body_model.h"
-#include "bodyloom/geometry/scene/pose_prior.h"
-#include "bodyloom/tracking/problem/frame_term.h"
+#include "geometry/body/body_model.h"
+#include "geometry/scene/pose_prior.h"
+#include "tracking/problem/frame_term.h"
 
 namespace bodyloom {
 

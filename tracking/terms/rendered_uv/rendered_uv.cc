@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv.h"
+#include "tracking/terms/rendered_uv/rendered_uv.h"
 
-#include "bodyloom/geometry/base/parallel.h"
-#include "bodyloom/tracking/problem/moving_camera.h"
-#include "bodyloom/tracking/problem/track_input.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/track_summary.h"
-#include "bodyloom/tracking/terms/dense/dense_whitening.h"
+#include "geometry/base/parallel.h"
+#include "tracking/problem/moving_camera.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/track_summary.h"
+#include "tracking/terms/dense/dense_whitening.h"
 
 namespace bodyloom {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "bodyloom/tracking/problem/clip_term.h"
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
+#include "tracking/problem/clip_term.h"
+#include "tracking/terms/rendered_uv/rendered_uv_term.h"
 
 namespace bodyloom {
 

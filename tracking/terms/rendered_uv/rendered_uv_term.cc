@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
+#include "tracking/terms/rendered_uv/rendered_uv_term.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <utility>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/tracking/problem/frame_accumulator.h"
-#include "bodyloom/tracking/terms/dense/dense_whitening.h"
+#include "geometry/base/check.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/terms/dense/dense_whitening.h"
 
 namespace bodyloom {
 

@@ -24,12 +24,12 @@
 #include <memory>
 #include <vector>
 
-#include "bodyloom/geometry/body/skinning.h"
-#include "bodyloom/tracking/problem/frame_layout.h"
-#include "bodyloom/tracking/problem/frame_term.h"
-#include "bodyloom/tracking/problem/track_options.h"
-#include "bodyloom/tracking/problem/visible_surface.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
+#include "geometry/body/skinning.h"
+#include "tracking/problem/frame_layout.h"
+#include "tracking/problem/frame_term.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/problem/visible_surface.h"
+#include "tracking/terms/dense/dense.h"
 
 namespace bodyloom {
 

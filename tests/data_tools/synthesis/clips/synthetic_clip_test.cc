@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/raster/visible_points.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/smooth_curve.h"
+#include "geometry/body/posed_body.h"
+#include "render/raster/visible_points.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

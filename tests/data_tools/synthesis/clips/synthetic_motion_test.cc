@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/smooth_curve.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_camera.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/smooth_curve.h"
+#include "data_tools/synthesis/clips/synth_camera.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::synthetic_motion_test {

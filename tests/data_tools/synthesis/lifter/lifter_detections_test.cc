@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/lifter_detections.h"
+#include "data_tools/synthesis/lifter/lifter_detections.h"
 
 #include <gtest/gtest.h>
 

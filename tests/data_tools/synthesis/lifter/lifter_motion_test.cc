@@ -7,11 +7,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "bodyloom/data_tools/synthesis/lifter/fast_random.h"
-#include "bodyloom/data_tools/synthesis/lifter/floor_poses.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/tracking/terms/joint_limits.h"
+#include "data_tools/synthesis/lifter/fast_random.h"
+#include "data_tools/synthesis/lifter/floor_poses.h"
+#include "geometry/body/posed_body.h"
 #include "tests/data_tools/synthesis/lifter/lifter_support.h"
+#include "tracking/terms/joint_limits.h"
 
 namespace bodyloom::lifter_motion_test {
 namespace {

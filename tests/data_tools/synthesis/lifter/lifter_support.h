@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/lifter/lifter_windows.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom {

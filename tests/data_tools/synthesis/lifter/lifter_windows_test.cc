@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/lifter/lifter_windows.h"
+#include "data_tools/synthesis/lifter/lifter_windows.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "bodyloom/geometry/base/parallel.h"
+#include "geometry/base/parallel.h"
 #include "tests/data_tools/synthesis/lifter/lifter_support.h"
 
 namespace bodyloom::lifter_windows_test {

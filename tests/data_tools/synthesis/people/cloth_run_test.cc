@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A synthetic person's skirt along motions.
-#include "bodyloom/geometry/cloth/cloth_run.h"
+#include "geometry/cloth/cloth_run.h"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@
 #include <optional>
 #include <utility>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/motion/load_motion.h"
-#include "bodyloom/data_tools/motion/motion_tools.h"
-#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
-#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
-#include "bodyloom/geometry/body/normals.h"
-#include "bodyloom/geometry/cloth/cloth_simulation.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/motion_tools.h"
+#include "data_tools/synthesis/people/dressed_person.h"
+#include "data_tools/synthesis/people/make_single_person_dataset.h"
+#include "geometry/body/normals.h"
+#include "geometry/cloth/cloth_simulation.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/synthesis/people/turning_motion.h"
 #include "tests/support/paths.h"
 

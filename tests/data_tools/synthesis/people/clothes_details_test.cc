@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/clothes_details.h"
+#include "data_tools/synthesis/people/clothes_details.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 
 namespace bodyloom::clothes_details_test {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/dressed_person.h"
+#include "data_tools/synthesis/people/dressed_person.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/formats/atomic_file.h"
-#include "bodyloom/data_tools/synthesis/people/dressed_render.h"
-#include "bodyloom/data_tools/synthesis/people/make_single_person_dataset.h"
-#include "bodyloom/geometry/cloth/cloth_run.h"
-#include "bodyloom/geometry/math/rotation.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/synthesis/people/dressed_render.h"
+#include "data_tools/synthesis/people/make_single_person_dataset.h"
+#include "geometry/cloth/cloth_run.h"
+#include "geometry/math/rotation.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/synthesis/people/turning_motion.h"
 #include "tests/support/toy_body.h"

@@ -2,7 +2,7 @@
 /// A motion to watch cloth by.
 #pragma once
 
-#include "bodyloom/geometry/scene/track.h"
+#include "geometry/scene/track.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/data_tools/synthesis/people/wardrobe.h"
+#include "data_tools/synthesis/people/wardrobe.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
+#include "data_tools/body/builtin_body.h"
 
 namespace bodyloom::wardrobe_test {
 namespace {

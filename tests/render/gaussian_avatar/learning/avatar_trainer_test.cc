@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/gaussian_avatar/learning/avatar_trainer.h"
+#include "render/gaussian_avatar/learning/avatar_trainer.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "bodyloom/render/gaussian_avatar/learning/loose_gaussians.h"
+#include "render/gaussian_avatar/learning/loose_gaussians.h"
 #include "tests/render/gaussian_avatar/learning/lesson.h"
 #include "tests/render/splat/same_bytes.h"
 

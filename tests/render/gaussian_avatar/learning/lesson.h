@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "bodyloom/geometry/uv_maps/uv_texels.h"
-#include "bodyloom/render/gaussian_avatar/learning/avatar_trainer.h"
-#include "bodyloom/render/gaussian_avatar/skin_gaussians.h"
+#include "geometry/uv_maps/uv_texels.h"
+#include "render/gaussian_avatar/learning/avatar_trainer.h"
+#include "render/gaussian_avatar/skin_gaussians.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/person_texture.h"
+#include "render/texture/complete/person_texture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Symmetry of the body at rest: counterparts, and the nearest known point around a limb.
-#include "bodyloom/render/texture/complete/rest_views.h"
+#include "render/texture/complete/rest_views.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/percentile.h"
-#include "bodyloom/render/texture/body_regions.h"
-#include "bodyloom/render/texture/complete/texel_counterparts.h"
+#include "geometry/base/percentile.h"
+#include "render/texture/body_regions.h"
+#include "render/texture/complete/texel_counterparts.h"
 #include "tests/render/garment/person_scene.h"
 
 namespace bodyloom::rest_views_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/uv_fill.h"
+#include "render/texture/complete/uv_fill.h"
 
 #include <gtest/gtest.h>
 

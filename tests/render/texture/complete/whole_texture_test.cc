@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/render/texture/complete/whole_texture.h"
+#include "render/texture/complete/whole_texture.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "bodyloom/render/texture/complete/texel_counterparts.h"
+#include "render/texture/complete/texel_counterparts.h"
 #include "tests/render/garment/person_scene.h"
 
 namespace bodyloom::whole_texture_test {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/onnx_model.h"
+#include "tracking/detection/inference/onnx_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "bodyloom/data_tools/formats/printable.h"
+#include "data_tools/formats/printable.h"
 #include "tests/data_tools/detection/onnx_writer.h"
 #include "tests/data_tools/detection/small_onnx.h"
 #include "tests/data_tools/detection/tflite_writer.h"

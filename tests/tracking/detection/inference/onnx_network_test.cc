@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/onnx_network.h"
+#include "tracking/detection/inference/onnx_network.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

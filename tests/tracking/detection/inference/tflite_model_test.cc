@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_model.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "bodyloom/data_tools/formats/atomic_file.h"
+#include "data_tools/formats/atomic_file.h"
 #include "tests/data_tools/detection/small_networks.h"
 #include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"

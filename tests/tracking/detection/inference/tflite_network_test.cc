@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/inference/tflite_network.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <string>
 #include <thread>
 
-#include "bodyloom/geometry/base/check.h"
-#include "bodyloom/geometry/base/hash_random.h"
-#include "bodyloom/tracking/detection/inference/tflite_shapes.h"
+#include "geometry/base/check.h"
+#include "geometry/base/hash_random.h"
 #include "tests/data_tools/detection/small_networks.h"
 #include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/detection/tflite_writer.h"
+#include "tracking/detection/inference/tflite_shapes.h"
 
 namespace bodyloom::tflite_network_test {
 namespace {

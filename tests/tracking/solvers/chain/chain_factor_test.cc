@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/chain/chain_factor.h"
+#include "tracking/solvers/chain/chain_factor.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <utility>
 
-#include "bodyloom/tracking/problem/panel_simd.h"
+#include "tracking/problem/panel_simd.h"
 
 namespace bodyloom::chain_factor_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/chain/chain_problem.h"
-#include "bodyloom/tracking/terms/landmarks.h"
+#include "tracking/solvers/chain/chain_problem.h"
+#include "tracking/terms/landmarks.h"
 
 #include <gtest/gtest.h>
 

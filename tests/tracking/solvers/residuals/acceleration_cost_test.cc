@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
 #include <random>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/solvers/residuals/ceres_functions.h"
+#include "geometry/math/rotation.h"
 #include "tests/tracking/jet_twin.h"
+#include "tracking/solvers/residuals/ceres_functions.h"
 
 namespace bodyloom::acceleration_cost_test {
 namespace {

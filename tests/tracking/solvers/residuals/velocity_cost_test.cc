@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/solvers/residuals/acceleration_cost.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "bodyloom/geometry/math/rotation.h"
+#include "geometry/math/rotation.h"
 #include "tests/tracking/jet_twin.h"
 
 namespace bodyloom::velocity_cost_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Standing feet and the trunk's lean in the frame cost against automatic differentiation of their formulas.
-#include "bodyloom/tracking/terms/ground_contact/ground_contact.h"
+#include "tracking/terms/ground_contact/ground_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <memory>
 #include <random>
 
-#include "bodyloom/tracking/problem/robust.h"
-#include "bodyloom/tracking/terms/upright.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
+#include "tracking/problem/robust.h"
+#include "tracking/terms/upright.h"
 
 namespace bodyloom::ground_contact_test {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lifter's term of the frame cost against automatic differentiation of its formula.
-#include "bodyloom/tracking/terms/lifted/lifted_pose.h"
+#include "tracking/terms/lifted/lifted_pose.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <random>
 
-#include "bodyloom/tracking/lifter/lifter_input.h"
-#include "bodyloom/tracking/problem/robust.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
+#include "tracking/lifter/lifter_input.h"
+#include "tracking/problem/robust.h"
 
 namespace bodyloom::lifted_pose_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/part_labels/distance_field.h"
+#include "tracking/terms/part_labels/distance_field.h"
 
 #include <gtest/gtest.h>
 

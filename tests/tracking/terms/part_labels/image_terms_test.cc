@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tracker with rendered UV, silhouettes and part labels: from input to summary.
-#include "bodyloom/tracking/clip/clip_fit.h"
+#include "tracking/clip/clip_fit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "bodyloom/data_tools/body/builtin_body.h"
-#include "bodyloom/data_tools/learned/pose_prior_io.h"
-#include "bodyloom/data_tools/synthesis/clips/demo_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/perturbed_motion.h"
-#include "bodyloom/data_tools/synthesis/clips/synth_clip.h"
-#include "bodyloom/geometry/body/posed_body.h"
-#include "bodyloom/render/raster/visibility_buffer.h"
-#include "bodyloom/tracking/clip/track_plan.h"
+#include "data_tools/body/builtin_body.h"
+#include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/synthesis/clips/demo_motion.h"
+#include "data_tools/synthesis/clips/perturbed_motion.h"
+#include "data_tools/synthesis/clips/synth_clip.h"
+#include "geometry/body/posed_body.h"
+#include "render/raster/visibility_buffer.h"
+#include "tracking/clip/track_plan.h"
 
 namespace bodyloom::image_terms_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/part_labels/part_label_term.h"
+#include "tracking/terms/part_labels/part_label_term.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <functional>
 #include <memory>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/tracking/problem/robust.h"
+#include "geometry/math/rotation.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
+#include "tracking/problem/robust.h"
 
 namespace bodyloom::part_label_term_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bodyloom/tracking/terms/part_labels/part_map.h"
+#include "tracking/terms/part_labels/part_map.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bodyloom/geometry/base/hash_random.h"
+#include "geometry/base/hash_random.h"
 
 namespace bodyloom::part_map_test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // L_r and the covariance of dense keypoints: derivatives against Jets with the visible face held, and what unmatched
 // pixels cost.
-#include "bodyloom/tracking/terms/rendered_uv/rendered_uv_term.h"
+#include "tracking/terms/rendered_uv/rendered_uv_term.h"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,13 @@
 #include <memory>
 #include <random>
 
-#include "bodyloom/geometry/math/rotation.h"
-#include "bodyloom/render/raster/visible_points.h"
-#include "bodyloom/tracking/problem/robust.h"
-#include "bodyloom/tracking/terms/dense/dense.h"
-#include "bodyloom/tracking/terms/dense/dense_whitening.h"
+#include "geometry/math/rotation.h"
+#include "render/raster/visible_points.h"
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
+#include "tracking/problem/robust.h"
+#include "tracking/terms/dense/dense.h"
+#include "tracking/terms/dense/dense_whitening.h"
 
 namespace bodyloom::rendered_uv_test {
 namespace {
