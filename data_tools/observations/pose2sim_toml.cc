@@ -5,79 +5,93 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#define TOML_EXCEPTIONS 0
+#define TOML_MAX_NESTED_VALUES 16
+#include <toml++/toml.h>
 
 #include "data_tools/formats/printable.h"
 
 namespace bodyloom {
 namespace {
 
-std::string TomlTrimmed(const std::string& text) {
-  const size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
-  return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
+/// A key of so many words makes as many tables within tables, which the parser frees by recursion.
+constexpr std::ptrdiff_t kMostDotsOfALine = 200;
+
+/// Our JSON's keys by Pose2Sim's; what is not among them is left out.
+const std::map<std::string_view, const char*>& OwnKeys() {
+  static const std::map<std::string_view, const char*> keys = {{"name", "name"},
+                                                               {"matrix", "K"},
+                                                               {"distortions", "distortion"},
+                                                               {"rotation", "rotation"},
+                                                               {"translation", "translation"}};
+  return keys;
 }
 
-/// Our JSON's keys by Pose2Sim's.
-const std::map<std::string, std::string>& OwnKeys() {
-  static const std::map<std::string, std::string> keys = {
-      {"matrix", "K"}, {"distortions", "distortion"}, {"rotation", "rotation"}, {"translation", "translation"}};
-  return keys;
+/// Dates and tables, which no camera has, as null.
+nlohmann::json JsonOfToml(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_floating_point()) return number->get();
+  if (const auto* integer = node.as_integer()) return integer->get();
+  if (const auto* truth = node.as_boolean()) return truth->get();
+  if (!node.is_array()) return nullptr;
+  nlohmann::json values = nlohmann::json::array();
+  for (const toml::node& item : *node.as_array()) values.push_back(JsonOfToml(item));
+  return values;
+}
+
+using NamedToml = std::pair<std::string, const toml::table*>;
+
+/// The tables that are cameras, in the order of the file.
+std::vector<NamedToml> CameraTables(const toml::table& file) {
+  static const std::set<std::string_view> others = {"cameras", "metadata", "capture_volume", "charuco", "checkerboard"};
+  std::vector<NamedToml> cameras;
+  for (const toml::table* tables : {&file, file["cameras"].as_table()}) {
+    if (tables == nullptr) continue;
+    for (const auto& [key, node] : *tables) {
+      if (node.is_table() && others.count(key.str()) == 0) cameras.emplace_back(key.str(), node.as_table());
+    }
+  }
+  std::sort(cameras.begin(), cameras.end(),
+            [](const NamedToml& a, const NamedToml& b) { return a.second->source().begin < b.second->source().begin; });
+  return cameras;
 }
 
 }  // namespace
 
 nlohmann::json CamerasOfPose2SimToml(const std::string& text, const std::string& where) {
-  static const std::set<std::string> others = {"metadata", "capture_volume", "charuco", "checkerboard"};
+  std::vector<std::string_view> lines;
+  for (size_t begin = 0, end = 0; begin <= text.size(); begin = end + 1) {
+    end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(std::string_view(text).substr(begin, end - begin));
+  }
+  const auto fail = [&](size_t line, const std::string& expected) {
+    const std::string found = PrintableText(lines[std::clamp<size_t>(line, 1, lines.size()) - 1]);
+    throw std::runtime_error(where + ": line " + std::to_string(line) + ": '" + found + "', expected " + expected);
+  };
+  for (const std::string_view& line : lines) {
+    if (std::count(line.begin(), line.end(), '.') > kMostDotsOfALine) {
+      fail(size_t(&line - lines.data()) + 1, "at most " + std::to_string(kMostDotsOfALine) + " dots");
+    }
+  }
+  const toml::parse_result file = toml::parse(std::string_view(text));
+  if (!file) fail(file.error().source().begin.line, "TOML: " + PrintableText(file.error().description()));
   nlohmann::json cameras = nlohmann::json::array();
-  bool is_camera = false;
-  std::istringstream stream(text);
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    const int first = number;
-    const auto fail = [&](const std::string& expected) {
-      throw std::runtime_error(where + ": line " + std::to_string(first) + ": '" + PrintableText(line) +
-                               "', expected " + expected);
-    };
-    line = TomlTrimmed(line.substr(0, line.find('#')));
-    if (line.empty()) continue;
-    if (line.front() == '[' && line.find('=') == std::string::npos) {
-      if (line.back() != ']' || line.size() < 3) fail("a table in brackets");
-      std::string name = TomlTrimmed(line.substr(1, line.size() - 2));
-      if (name.starts_with("cameras.")) name = name.substr(8);
-      is_camera = others.count(name) == 0;
-      if (is_camera) cameras.push_back({{"name", name}});
-      continue;
+  for (const auto& [name, table] : CameraTables(file.table())) {
+    nlohmann::json camera = {{"name", name}};
+    for (const auto& [key, node] : *table) {
+      if (const auto own = OwnKeys().find(key.str()); own != OwnKeys().end()) camera[own->second] = JsonOfToml(node);
     }
-    const size_t equal = line.find('=');
-    if (equal == std::string::npos) fail("key = value");
-    const std::string key = TomlTrimmed(line.substr(0, equal));
-    std::string value = TomlTrimmed(line.substr(equal + 1)), more;
-    while (std::count(value.begin(), value.end(), '[') > std::count(value.begin(), value.end(), ']') &&
-           std::getline(stream, more)) {
-      ++number;
-      value += " " + TomlTrimmed(more.substr(0, more.find('#')));
+    if (const toml::node* size = table->get("size")) {
+      const nlohmann::json sides = JsonOfToml(*size);
+      if (!sides.is_array() || sides.size() != 2) fail(size->source().begin.line, "size = [width, height]");
+      camera["width"] = sides[0], camera["height"] = sides[1];
     }
-    if (!is_camera || (key != "name" && key != "size" && OwnKeys().count(key) == 0)) continue;
-    const nlohmann::json parsed = nlohmann::json::parse(value, nullptr, false);
-    if (parsed.is_discarded()) fail("a number, a text or an array of them");
-    nlohmann::json& camera = cameras.back();
-    if (key == "name") {
-      if (!parsed.is_string()) fail("the camera's name");
-      camera["name"] = parsed;
-    } else if (key == "size") {
-      if (!parsed.is_array() || parsed.size() != 2 || !parsed[0].is_number() || !parsed[1].is_number() ||
-          !(parsed[0].get<double>() >= 1 && parsed[0].get<double>() < 1e6) ||
-          !(parsed[1].get<double>() >= 1 && parsed[1].get<double>() < 1e6)) {
-        fail("size = [width, height]");
-      }
-      camera["width"] = static_cast<int>(parsed[0].get<double>());
-      camera["height"] = static_cast<int>(parsed[1].get<double>());
-    } else {
-      camera[OwnKeys().at(key)] = parsed;
-    }
+    cameras.push_back(std::move(camera));
   }
   if (cameras.empty()) throw std::runtime_error(where + ": no camera, expected a table with size and matrix");
   return cameras;

@@ -3,8 +3,7 @@
 ///
 /// A table a camera, in the order of the file: `name` (else the table's own; of [cameras.X] X), `size` [w, h], `matrix`
 /// 3×3, `distortions` 4 or 5, `rotation` (Rodrigues, world → camera), `translation` (metres). Tables metadata,
-/// capture_volume, charuco and checkerboard are no cameras. Of TOML this reads what such files hold: tables, and keys
-/// with numbers, texts, truth values and arrays of them.
+/// capture_volume, charuco and checkerboard are no cameras. Values of other keys may be anything that TOML knows.
 /// Source: Pose2Sim common.py, calibration.py.
 #pragma once
 

@@ -19,6 +19,7 @@
 #include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/mmpose_reader.h"
 #include "data_tools/observations/openpose_reader.h"
+#include "data_tools/observations/pose2sim_toml.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {
@@ -46,12 +47,19 @@ inline bool AcceptsDetections(const std::string& bytes) {
   return taken;
 }
 
+/// As JSON and as Pose2Sim's TOML, whatever it is.
 inline bool AcceptsCameras(const std::string& bytes) {
-  return Accepts([&] {
+  bool taken = Accepts([&] {
     for (const NamedCamera& camera : CamerasFromText(bytes, "fuzz.json")) {
       if (!(camera.camera.fx > 0) || !(camera.camera.fy > 0)) throw std::logic_error("a camera without a focal length");
     }
   });
+  taken |= Accepts([&] {
+    for (const nlohmann::json& camera : CamerasOfPose2SimToml(bytes, "fuzz.toml")) {
+      if (!camera.contains("name")) throw std::logic_error("a camera without a name");
+    }
+  });
+  return taken;
 }
 
 /// As this project's JSON and as each of COLMAP's files, whatever it is.

@@ -68,6 +68,7 @@ THIRD_PARTY = [
     (r"nlohmann/(?!json_fwd)", {"data_tools", "data_tools/synthesis", "data_tools/evaluation", "pipelines",
                                 "pipelines/neural"} | TEST_CODE, False),
     (r"(matio|zlib)\.h", {"data_tools"} | TEST_CODE, False),
+    (r"toml\+\+/", {"data_tools"}, False),
     (r"lib(av\w+|swscale|swresample)/(?!(sha|mem)\.h)", {"data_tools/video"} | TEST_CODE, False),
     (r"libavutil/(sha|mem)\.h", {"data_tools"} | TEST_CODE, False),
     (r"CLI/", {"apps", "apps/neural", "apps/cgal"}, False),

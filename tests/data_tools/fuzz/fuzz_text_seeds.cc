@@ -75,7 +75,11 @@ void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
       R"("rotation":[3.1,0,0],"translation":[-3,180,450]}])",
       R"({"cameras":[{"name":"cam_01","size":[1088,1920],"K":[[1681,0,533],[0,1682,948],[0,0,1]],)"
       R"("dist_k1k2p1p2":[-0.05,0.1,0.001,0.002],"rvec":[0,0,0],"tvec_m":[0.3,0.9,2.9]}]})",
-      R"({"width":640,"height":480,"fx":600})"};
+      R"({"width":640,"height":480,"fx":600})",
+      "# two cameras\n[int_cam01]\nname = \"cam_01\"\nsize = [ 1088.0, 1920.0]\n"
+      "matrix = [ [ 1681.0, 0.0, 533.0],\n [ 0.0, 1682.0, 948.0], [ 0.0, 0.0, 1.0]]  # px\n"
+      "distortions = [ -0.05, 0.1]\nrotation = [ 0.1, 0.2, 0.3]\ntranslation = [ 0.3, 0.9, 2.9]\nfisheye = false\n"
+      "[cameras.second]\nsize = [ 640, 480]\n[metadata]\nadjusted = false\n"};
   const std::string path_of_frames =
       R"({"camera_path":1,"fps":30,"camera":{"width":640,"height":480,"fx":600},"frames":[)"
       R"({"frame":0,"quaternion":[1,0,0,0],"translation":[0,0,0]},)"
