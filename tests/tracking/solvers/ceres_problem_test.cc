@@ -25,6 +25,7 @@
 #include "tracking/solvers/chain/chain_problem.h"
 #include "tracking/solvers/solve_sequence.h"
 #include "tracking/solvers/term_costs.h"
+#include "tracking/track_sequence.h"
 
 namespace bodyloom::ceres_problem_test {
 namespace {
@@ -270,7 +271,7 @@ TEST(CeresFinish, TheProblemIsWhatTheTrackerSolves) {
   input.keypoints = &clip.keypoints;
   input.prior = &BuiltinPosePrior();
   input.camera = clip.truth.camera;
-  const TrackSequenceResult track = FitClip(input, {});
+  const TrackSequenceResult track = TrackSequence(input);
   const auto problem = BuildCeresProblem(input);
   ASSERT_NE(problem->blocks(), nullptr);
   EXPECT_NEAR(SumOf(problem->blocks()->CostByTerm()), track.summary.ceres.initial_cost,
