@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "data_tools/evaluation/cramer_rao.h"
+#include "benchmarks/accuracy/cramer_rao.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/track.h"

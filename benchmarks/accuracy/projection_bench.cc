@@ -25,12 +25,12 @@
 #include "data_tools/evaluation/vertex_errors.h"
 #include "data_tools/learned/lifter_weights_io.h"
 #include "data_tools/learned/pose_prior_io.h"
-#include "data_tools/synthesis/clips/rendered_labels.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/base/check.h"
 #include "geometry/base/stopwatch.h"
 #include "geometry/base/units.h"
 #include "tests/support/paths.h"
+#include "tests/support/rendered_labels.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/lifter/given_landmarks.h"
 

@@ -21,9 +21,9 @@
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
+#include "benchmarks/accuracy/motion_retrieval.h"
+#include "benchmarks/accuracy/region_retrieval.h"
 #include "data_tools/body/builtin_body.h"
-#include "data_tools/evaluation/motion_retrieval.h"
-#include "data_tools/evaluation/region_retrieval.h"
 #include "data_tools/formats/atomic_file.h"
 #include "geometry/base/check.h"
 

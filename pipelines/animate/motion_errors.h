@@ -14,7 +14,7 @@ namespace bodyloom {
 /// The error of every frame of a clip beside how much its motion is like what was trained on.
 class MotionErrors {
  public:
-  /// `similarity` by frame of the clip (data_tools/evaluation/motion_retrieval.h), or empty.
+  /// `similarity` by frame of the clip (data_tools/evaluation/motion_similarity.h), or empty.
   explicit MotionErrors(std::vector<float> similarity) : similarity_(std::move(similarity)) {}
   void Add(int frame, const MotionFrameScores& scores);
 

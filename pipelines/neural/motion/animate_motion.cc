@@ -10,7 +10,7 @@
 
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/datasets/single_person_dataset.h"
-#include "data_tools/evaluation/motion_retrieval.h"
+#include "data_tools/evaluation/motion_similarity.h"
 #include "data_tools/motion/motion_tools.h"
 #include "data_tools/motion/resample_track.h"
 #include "data_tools/motion/track_io.h"

@@ -11,11 +11,11 @@
 #include "data_tools/evaluation/part_label_evaluation.h"
 #include "data_tools/observations/mask_runs.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
-#include "data_tools/synthesis/clips/rendered_labels.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/body/posed_body.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/support/rendered_labels.h"
 #include "tracking/lifter/given_landmarks.h"
 
 namespace bodyloom::part_labels_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/turning_person.h"
+#include "benchmarks/accuracy/turning_person.h"
 
 #include <cmath>
 

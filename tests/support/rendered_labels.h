@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/synthesis/clips/rendered_labels.h"
-
-#include <utility>
+/// Part labels of a known track: what a perfect detector would predict for every pixel.
+#pragma once
 
 #include "geometry/base/check.h"
+#include "geometry/body/body_model.h"
 #include "geometry/body/posed_body.h"
+#include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
 #include "render/raster/visibility_buffer.h"
 
 namespace bodyloom {
 
-PartLabelSequence RenderPartLabels(const BodyModel& body, const Track& track, int block_px) {
+/// Every pixel takes the chart of the face that the centre of its block of block_px × block_px pixels sees (1: its own
+/// centre); a low-resolution detector's labels come in blocks. Frames without a result are empty.
+/// Throws std::invalid_argument when the body has no parts, the camera no image size, or block_px < 1.
+inline PartLabelSequence RenderPartLabels(const BodyModel& body, const Track& track, int block_px = 1) {
   BODYLOOM_CHECK(body.has_parts(), "RenderPartLabels: the body '", body.name(), "' has no parts");
   BODYLOOM_CHECK(block_px >= 1, "RenderPartLabels: blocks of ", block_px, " px, expected at least 1");
   PartLabelSequence labels;

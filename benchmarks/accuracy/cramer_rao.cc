@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/cramer_rao.h"
+#include "benchmarks/accuracy/cramer_rao.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

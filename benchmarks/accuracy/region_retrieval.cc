@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/region_retrieval.h"
+#include "benchmarks/accuracy/region_retrieval.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/motion_retrieval.h"
+#include "benchmarks/accuracy/motion_retrieval.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "data_tools/descriptors/person_frames.h"
 #include "geometry/base/check.h"
 #include "geometry/base/hash_random.h"
 #include "geometry/body/posed_body.h"
@@ -16,15 +14,6 @@ namespace {
 
 constexpr double kPeakShare = 0.9, kSlow = 1 / 3.0;
 constexpr int kReach = 4;
-
-DescriptorRows Standardised(const DescriptorRows& rows) {
-  DescriptorRows result = rows.colwise() - rows.rowwise().mean();
-  for (Eigen::Index t = 0; t < rows.rows(); ++t) {
-    const float norm = result.row(t).norm();
-    if (norm > 0) result.row(t) /= norm;
-  }
-  return result;
-}
 
 DescriptorRows Chosen(const DescriptorRows& rows, const std::vector<int>& frames) {
   DescriptorRows chosen(Eigen::Index(frames.size()), rows.cols());
@@ -74,25 +63,6 @@ DescriptorRows DenseCoordinates(const PersonFrames& frames, int past) {
   std::vector<float> mask(area);
   for (int t = 0; t < frames.num_frames(); ++t) frames.BodyMaps(t, {rows.row(t).data(), 2 * area}, mask);
   return WithPast(rows, past);
-}
-
-DescriptorRows MotionDescriptors(const PersonFrames& frames, int past) {
-  BODYLOOM_CHECK(past >= 0 && past <= frames.options().past, "motion descriptors: ", past, " past frames of ",
-                 frames.options().past);
-  const size_t texels = size_t(frames.options().uv_size) * frames.options().uv_size;
-  const size_t size = (3 + 3 * size_t(past)) * texels;
-  DescriptorRows rows(frames.num_frames(), Eigen::Index(size));
-  std::vector<float> maps(frames.channels() * texels);
-  for (int t = 0; t < frames.num_frames(); ++t) {
-    frames.MotionMaps(t, maps);
-    std::copy_n(maps.begin(), size, rows.row(t).data());
-  }
-  return rows;
-}
-
-Eigen::MatrixXf NormalisedCrossCorrelation(const DescriptorRows& a, const DescriptorRows& b) {
-  BODYLOOM_CHECK(a.cols() == b.cols(), "descriptors of ", a.cols(), " and ", b.cols(), " values");
-  return Standardised(a) * Standardised(b).transpose();
 }
 
 std::vector<int> Peaks(std::span<const float> curve, double share, int reach) {
@@ -160,37 +130,6 @@ RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows
     scores.yaw_error_deg += std::abs(person.yaw_deg[found] - person.yaw_deg[t]) / double(answered);
   }
   return scores;
-}
-
-namespace {
-
-DescriptorRows Described(const BodyModel& body, const Track& track, int past, int num_threads,
-                         const SurfaceMotion& motion) {
-  PersonFramesOptions options;
-  options.motion = motion;
-  options.uv_size = 32;
-  options.past = past;
-  options.num_threads = num_threads;
-  return MotionDescriptors(PersonFrames(body, track, options), past);
-}
-
-}  // namespace
-
-std::vector<float> SimilarityToNearest(const BodyModel& body, const Track& track, const Track& others, int past,
-                                       int num_threads, const SurfaceMotion& motion, std::span<const char> counts) {
-  BODYLOOM_CHECK(counts.empty() || static_cast<int>(counts.size()) == others.num_frames(),
-                 "motion similarity: ", counts.size(), " flags of ", others.num_frames(), " frames");
-  const Eigen::MatrixXf similarity = NormalisedCrossCorrelation(Described(body, track, past, num_threads, motion),
-                                                                Described(body, others, past, num_threads, motion));
-  std::vector<float> nearest(track.num_frames(), std::numeric_limits<float>::quiet_NaN());
-  for (int t = 0; t < track.num_frames(); ++t) {
-    if (!track.HasResult(t)) continue;
-    for (int s = 0; s < others.num_frames(); ++s) {
-      if (!others.HasResult(s) || (!counts.empty() && counts[s] == 0)) continue;
-      nearest[t] = std::isnan(nearest[t]) ? similarity(t, s) : std::max(nearest[t], similarity(t, s));
-    }
-  }
-  return nearest;
 }
 
 }  // namespace bodyloom

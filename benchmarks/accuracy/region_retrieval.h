@@ -6,8 +6,8 @@
 
 #include <vector>
 
+#include "benchmarks/accuracy/motion_retrieval.h"
 #include "data_tools/descriptors/person_frames.h"
-#include "data_tools/evaluation/motion_retrieval.h"
 #include "geometry/body/body_model.h"
 
 namespace bodyloom {

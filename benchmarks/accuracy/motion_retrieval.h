@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Retrieval of moments of a motion by a descriptor: nearest neighbours by normalised cross-correlation (Yoon et al.,
-/// CVPR 2022, Fig. 4). A descriptor for which other moments look the same has several peaks a cycle.
+/// CVPR 2022, Fig. 4). A descriptor for which other moments look the same has several peaks a cycle. Descriptor
+/// (C) is MotionDescriptors() of data_tools/evaluation/motion_similarity.h.
 #pragma once
 
-#include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "benchmarks/accuracy/turning_person.h"
 #include "data_tools/descriptors/person_frames.h"
-#include "data_tools/evaluation/turning_person.h"
+#include "data_tools/evaluation/motion_similarity.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/track.h"
-#include "geometry/uv_maps/descriptor_options.h"
 
 namespace bodyloom {
-
-/// A row a frame.
-using DescriptorRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Rows of one frame each, to rows of each frame and the past − 1 before it (the first frame repeated). Throws
 /// std::invalid_argument for a past below 1.
@@ -29,12 +27,6 @@ DescriptorRows KeypointTrajectories(const BodyModel& body, const Track& track, i
 /// (B): atlas coordinates (u, v) of each pixel of the frames' window, background 0, of each frame and the past − 1
 /// before it.
 DescriptorRows DenseCoordinates(const PersonFrames& frames, int past);
-/// (C): the 3D motion descriptor, 3 + 3·past channels over the atlas; with past 0 only its normals.
-DescriptorRows MotionDescriptors(const PersonFrames& frames, int past);
-
-/// Pearson's correlation of every row of `a` with every row of `b`, in [−1, 1]; 0 where a row is constant. Throws
-/// std::invalid_argument when lengths differ.
-Eigen::MatrixXf NormalisedCrossCorrelation(const DescriptorRows& a, const DescriptorRows& b);
 
 /// Where a curve has its largest value within `reach` samples either side (of equal ones the first), and at least
 /// `share` of its largest value of all. The first and last sample are no peaks: the curve may rise beyond them.
@@ -57,17 +49,5 @@ RetrievalScores ScoreRetrieval(const TurningPerson& person, const DescriptorRows
 
 /// The frames that ScoreRetrieval counts, of cycle 0 (`first`) or of all later ones.
 std::vector<int> TurningFrames(const TurningPerson& person, bool first);
-
-/// Similarity of each frame's motion to those of other frames: the largest normalised cross-correlation, in [−1, 1], of
-/// its motion descriptor (normals and the velocities of `past` frames over an atlas of 32², in the axes of `motion`)
-/// with that of any frame of `others`, which may be the same track (then 1). `counts` has an entry a frame of `others`,
-/// 0 for those that are only there for the velocities of their neighbours; empty: all count. NaN for a frame without a
-/// result, and where no frame of `others` counts. Yoon et
-/// al., CVPR 2022, Fig. 6.
-/// Memory: 4 · 1024 · (3 + 3 past) bytes a frame of both. Throws as PersonFrames, and std::invalid_argument for another
-/// number of `counts`.
-std::vector<float> SimilarityToNearest(const BodyModel& body, const Track& track, const Track& others, int past,
-                                       int num_threads, const SurfaceMotion& motion = {},
-                                       std::span<const char> counts = {});
 
 }  // namespace bodyloom

@@ -2,9 +2,9 @@
 /// A person who turns, and maps of it, small enough to be correlated in a moment.
 #pragma once
 
+#include "benchmarks/accuracy/turning_person.h"
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/descriptors/person_frames.h"
-#include "data_tools/evaluation/turning_person.h"
 
 namespace bodyloom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/cramer_rao.h"
+#include "benchmarks/accuracy/cramer_rao.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace bodyloom::metrics_cramer_rao_test {
+namespace bodyloom::cramer_rao_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -167,4 +167,4 @@ TEST(CramerRaoTest, BrokenContractsThrow) {
 }
 
 }  // namespace
-}  // namespace bodyloom::metrics_cramer_rao_test
+}  // namespace bodyloom::cramer_rao_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/evaluation/region_retrieval.h"
+#include "benchmarks/accuracy/region_retrieval.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "data_tools/body/builtin_body.h"
 #include "geometry/scene/observations.h"
-#include "tests/data_tools/evaluation/short_turning_clip.h"
+#include "tests/benchmarks/short_turning_clip.h"
 
 namespace bodyloom::region_retrieval_test {
 namespace {
