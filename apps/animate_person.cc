@@ -46,7 +46,7 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
   auto request = std::make_shared<AnimatePersonRequest>();
   PhotoFitSettings& fit = request->photos.fit;
   verb->add_option("--image", request->photos.images, "Photos of the person; the first gives shape and clothes");
-  verb->add_option("--person", request->person, "A person who was kept (--keep), in place of photos")->type_name("DIR");
+  verb->add_option("--kept", request->person, "A person who was kept (--keep), in place of photos")->type_name("DIR");
   verb->add_option("--garment-from", request->garment_from,
                    "Photo of somebody, or the folder of a person who was kept: their clothes are worn");
   verb->add_option("--keep", request->keep,
@@ -71,7 +71,7 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
                    "Other light: an environment (.png, .jpg) or JSON, as of animate motion (default: the photo's)");
   verb->add_option("--size", request->size, "Pixels of the picture's longer side (default: as the track's)")
       ->check(CLI::Range(2, 8192));
-  verb->add_option("--who", fit.person, "Of several people in a photo: 0 is the largest")->capture_default_str();
+  verb->add_option("--person", fit.person, "Of several people in a photo: 0 is the largest")->capture_default_str();
   verb->add_option("--texture-size", request->photos.texture_size, "Texels a side")->capture_default_str();
   verb->add_flag("--no-loose-garment{false}", request->photos.loose_garment,
                  "Look for no skirt, dress or coat: all clothes are close to the skin");
@@ -96,8 +96,8 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
       "Examples:\n"
       "  bodyloom animate person --image me.jpg --track dance.npz --out me.mp4\n"
       "  bodyloom animate person --image front.jpg back.jpg --keep me\n"
-      "  bodyloom animate person --person me --garment-from friend.jpg --track dance.npz --out me.mp4\n"
-      "  bodyloom animate person --person me --track dance.npz --view-yaw 0:360 --background b.jpg --out me.mp4");
+      "  bodyloom animate person --kept me --garment-from friend.jpg --track dance.npz --out me.mp4\n"
+      "  bodyloom animate person --kept me --track dance.npz --view-yaw 0:360 --background b.jpg --out me.mp4");
   verb->callback([request, scored, action, arguments = std::move(arguments)] {
     *action = [=] {
       if (*scored) ExecNeural(arguments);

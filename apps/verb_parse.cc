@@ -44,7 +44,7 @@ void AddParseVerb(CLI::App& app, Action* action) {
                    "What tells them apart: builtin (the network that ships), body (what the fitted body shows "
                    "nearest), or weights of your own (bodyloom train parser)")
       ->capture_default_str();
-  verb->add_option("--who", request->fit.person, "Of several people in the photo: 0 is the largest")
+  verb->add_option("--person", request->fit.person, "Of several people in the photo: 0 is the largest")
       ->capture_default_str();
   verb->add_option("--body", request->fit.body, "The body that is fitted (default: the built-in body)");
   verb->add_option("--focal", request->fit.focal_px, "The photo's focal length in pixels (default: estimated)");

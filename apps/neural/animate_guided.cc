@@ -64,7 +64,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
           "Complete the maps over six views drawn by the networks, as the paper does, instead of as the run says")
       ->excludes("--as-seen");
   verb->add_flag(
-      "--anywhere", request.anywhere,
+      "--whole-window", request.anywhere,
       "Compute the whole window: the person may be farther from the body than clothes ever were in training");
   verb->add_flag("--full-size", request.full_size, kFullSizeHelp);
   verb->add_option("--sheet", request.sheet, "Contact sheet: photo, what is known, labels, result");

@@ -82,7 +82,7 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
   verb->add_flag("--without-past", request->without_past,
                  "Every frame as if it were the first, warmed up from nothing: what its own motion says, not what the "
                  "renderer's last pictures do");
-  verb->add_flag("--anywhere", request->anywhere,
+  verb->add_flag("--whole-window", request->anywhere,
                  "The person may be farther from the body than clothes ever were in training");
   verb->add_option(
       "--like", request->like,

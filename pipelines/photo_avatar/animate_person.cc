@@ -78,7 +78,7 @@ class PersonAnimation {
 
   void CheckRequest() const {
     if (request_.person.empty() == request_.photos.images.empty()) {
-      throw RequestError("expected photos (--image) or a person who was kept (--person), one of them");
+      throw RequestError("expected photos (--image) or a person who was kept (--kept), one of them");
     }
     const bool shows = Draws() || !request_.moved_track.empty();
     if (request_.track.empty() && shows) throw RequestError("--track is required: the motion");

@@ -79,11 +79,11 @@ TEST_F(AnimatePersonVerb, OfTwoPeopleTheLargerIsTakenUnlessAskedFor) {
   ASSERT_EQ(Animate(both).exit_code, 0);
   const auto report = nlohmann::json::parse(std::ifstream(File("out.json")));
   EXPECT_EQ(report["person"]["photos"][0]["people_found"], 2);
-  EXPECT_EQ(RunCommand({"animate", "person", "--image", File("photo.png"), "--who", "1", "--keep", File("other"),
+  EXPECT_EQ(RunCommand({"animate", "person", "--image", File("photo.png"), "--person", "1", "--keep", File("other"),
                         "--texture-size", "128"})
                 .exit_code,
             0);
-  const CommandResult third = RunCommand({"animate", "person", "--image", File("photo.png"), "--who", "2", "--keep",
+  const CommandResult third = RunCommand({"animate", "person", "--image", File("photo.png"), "--person", "2", "--keep",
                                           File("third"), "--texture-size", "128"});
   EXPECT_EQ(third.exit_code, 1);
   EXPECT_THAT(third.err, HasSubstr("photo.png"));

@@ -92,7 +92,7 @@ TEST_F(TrainGuidedVerb, TrainsGoesOnAndAnimates) {
   EXPECT_GT(scores[1]["texels_seen"].get<double>(), scores[0]["texels_seen"].get<double>());
 
   const CommandResult as_seen = Animate({"--image", one, "--track", other + "/track.npz", "--out", scratch_ / "b.mp4",
-                                         "--as-seen", "--anywhere", "--background", "studio"});
+                                         "--as-seen", "--whole-window", "--background", "studio"});
   EXPECT_EQ(as_seen.exit_code, 0) << as_seen.err;
   const CommandResult drawn =
       Animate({"--image", one, "--track", other + "/track.npz", "--out", scratch_ / "c.mp4", "--virtual-views",
