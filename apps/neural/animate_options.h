@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "pipelines/neural/photo/photo_animation.h"
+#include "pipelines/neural/animation.h"
 
 namespace CLI {
 class App;
@@ -15,16 +15,6 @@ namespace bodyloom {
 /// Of --full-size.
 inline constexpr const char* kFullSizeHelp =
     "Pictures as large as the track's, the person enlarged to them (default: as large as the networks draw)";
-
-/// Of --background of the verbs that render from a photo.
-inline constexpr const char* kPhotoBackgroundHelp =
-    "Behind the person: photo (the photo's own, filled in), studio (a plain backdrop), or an image, video or folder";
-
-/// What that option means.
-PhotoBackground ParsePhotoBackground(const std::string& option);
-
-/// --views, --garment-from, --parts, --shape, --view-yaw, --image-iuv, --iuv.
-void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request);
 
 /// --weights of the verbs that print LPIPS or contextual scores; `what`: the files' names and what they are for.
 void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what);

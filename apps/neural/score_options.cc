@@ -55,7 +55,7 @@ void TakeFrom(const PhotoAnimationRequest& animation, ScorePeopleRequest* score)
   score->threads = animation.threads, score->device = animation.device;
 }
 
-std::string ScoresText(const GuidedScores& s) {
+std::string ScoresText(const PersonScores& s) {
   const auto text = [](const char* format, auto... values) {
     char words[320];
     std::snprintf(words, sizeof words, format, values...);
@@ -75,7 +75,7 @@ std::string ScoresText(const GuidedScores& s) {
 void Print(const ScorePeopleSummary& summary) {
   for (const ScoredPhotos& s : summary.scored) {
     std::printf("%d photo%s (%.0f %% of the texels; %s given): SSIM %.4f, %s\n", s.photos, s.photos == 1 ? "" : "s",
-                100 * s.texels_seen, summary.given.c_str(), s.ssim, ScoresText(s.scores).c_str());
+                100 * s.texels_seen, summary.given.c_str(), s.scores.ssim, ScoresText(s.scores).c_str());
     if (s.missing > 0) std::printf("  of %d people the photos show too little: drawn as nobody\n", s.missing);
   }
 }

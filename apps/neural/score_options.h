@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "pipelines/neural/photo/photo_animation.h"
+#include "pipelines/neural/person/photo_animation.h"
 #include "pipelines/neural/score/score_people.h"
 
 namespace CLI {
@@ -25,7 +25,7 @@ bool IsScored(const ScorePeopleRequest& score, const PhotoAnimationRequest& anim
 void TakeFrom(const PhotoAnimationRequest& animation, ScorePeopleRequest* score);
 
 /// L1, PSNR and all that was measured.
-std::string ScoresText(const GuidedScores& scores);
+std::string ScoresText(const PersonScores& scores);
 
 /// A line a number of photos.
 void Print(const ScorePeopleSummary& summary);

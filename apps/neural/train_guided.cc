@@ -38,14 +38,14 @@ void RunTrainGuided(const TrainGuidedArguments& parsed) {
   TrainGuidedRendererRequest request = parsed.request;
   request.options.config = ConfigOf(parsed);
   request.options.labels_by_cross_entropy = parsed.label_loss == "ce";
-  const TrainGuidedRendererSummary summary = TrainGuidedRenderer(request, CommandCallbacks());
-  if (summary.perceptual_random_features) PrintRandomFeatures("perceptual and contextual loss", "VGG-16");
+  const TrainGuidedSummary summary = TrainGuidedRenderer(request, CommandCallbacks());
+  PrintLosses(summary, "perceptual and contextual loss", "VGG-16");
   if (!summary.loss_weights.empty()) {
     std::printf("weights of the losses: VGG %.3g, contextual %.3g, adversarial %.3g, KL %.3g\n",
                 summary.loss_weights[0], summary.loss_weights[1], summary.loss_weights[2], summary.loss_weights[3]);
   }
   PrintStep(summary, request.options.steps);
-  const GuidedScores& s = summary.scores;
+  const PersonScores& s = summary.scores;
   if (s.frames > 0) {
     std::printf(
         "validation of %d pictures (%s given): L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS%s "
@@ -53,7 +53,7 @@ void RunTrainGuided(const TrainGuidedArguments& parsed) {
         s.frames, kGivenOfPeople, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou,
         s.lpips_random_features ? " (random features)" : "", s.lpips);
   }
-  PrintEnd(summary, summary.checkpoint, request.out);
+  PrintEnd(summary, request.out);
 }
 
 }  // namespace
@@ -63,18 +63,13 @@ void AddTrainGuided(CLI::App& train, Action* action) {
   auto parsed = std::make_shared<TrainGuidedArguments>();
   TrainGuidedRendererRequest& request = parsed->request;
   TrainGuidedOptions& options = request.options;
-  verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people)")->required();
-  verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
-      ->required();
-  verb->add_option("--body", request.body, "The dataset's body (default: the built-in body)");
+  AddPeopleOptions(verb, &request.data, &request.out, &request.body);
   AddProfileOption(verb, &parsed->profile);
   verb->add_option("--image-size", parsed->image_size, "Pixels and texels a side (default: the profile's)")
       ->check(CLI::Range(32, 4096));
   verb->add_option("--without", parsed->without, "Leave out a part, as the paper's ablations do")
       ->check(CLI::IsMember(GuidedParts()));
-  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
-  verb->add_option("--batch", options.batch, "Pairs of pictures in a batch")->capture_default_str();
-  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
+  AddStepOptions(verb, &options.steps, &options.batch, &options.learning_rate, "Pairs of pictures in a batch");
   verb->add_option("--balance-steps", options.balance_steps, "Steps by L1 alone, in which the losses are measured")
       ->capture_default_str();
   verb->add_option("--gan-share", options.gan_share, "Of the adversarial loss, beside its balanced weight")

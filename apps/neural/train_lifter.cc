@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/neural/neural_verbs.h"
+#include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
 #include "apps/progress.h"
 #include "pipelines/neural/lifter/train_lifter_network.h"
@@ -44,10 +45,8 @@ void AddTrainLifter(CLI::App& train, Action* action) {
   verb->add_option("--share", request.share, "Of the training motion that is used")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();
-  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
-  verb->add_option("--batch", options.batch, "Windows in a batch")->capture_default_str();
+  AddStepOptions(verb, &options.steps, &options.batch, &options.learning_rate, "Windows in a batch");
   verb->add_option("--channels", options.width, "Width of the network")->capture_default_str();
-  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
   verb->add_option("--optimizer", parsed->optimizer, "For the blocks' matrices")
       ->check(CLI::IsMember({"muon", "adamw"}))
       ->capture_default_str();

@@ -39,13 +39,11 @@ void RunTrainMotion(const TrainMotionArguments& parsed) {
   request.options.shape_by_cross_entropy = parsed.shape_loss == "ce";
   request.frames.train = ParseFrameRanges(parsed.train, "--train");
   request.frames.validate = ParseFrameRanges(parsed.validate, "--validate");
-  const TrainMotionRendererSummary summary = TrainMotionRenderer(request, CommandCallbacks());
-  PrintLossesOff(summary.losses_off);
-  if (request.options.perceptual_weight > 0 && summary.perceptual_random_features)
-    PrintRandomFeatures("perceptual loss", "VGG-16");
+  const TrainMotionSummary summary = TrainMotionRenderer(request, CommandCallbacks());
+  PrintLosses(summary, request.options.perceptual_weight > 0 ? "perceptual loss" : nullptr, "VGG-16");
   PrintStep(summary, request.options.steps);
   if (summary.scores.frames > 0) std::cout << "validation: " << ScoresText(summary.scores) << "\n";
-  PrintEnd(summary, summary.checkpoint, request.out);
+  PrintEnd(summary, request.out);
 }
 
 }  // namespace
@@ -56,8 +54,7 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   TrainMotionRendererRequest& request = parsed->request;
   TrainMotionOptions& options = request.options;
   AddMotionDataOptions(verb, &request.data);
-  verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
-      ->required();
+  AddRunFolderOption(verb, &request.out);
   AddSurfaceMotionOptions(verb, &request.data.motion, &request.cameras, &request.view);
   AddProfileOption(verb, &parsed->profile);
   verb->add_option("--descriptor", parsed->descriptor,
@@ -77,8 +74,7 @@ void AddTrainMotion(CLI::App& train, Action* action) {
   verb->add_option("--share", request.frames.share, "Of the training frames that is used, in stretches of 32")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();
-  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
-  verb->add_option("--batch", options.batch, "Frames in a batch")->capture_default_str();
+  AddStepOptions(verb, &options.steps, &options.batch, &options.learning_rate, "Frames in a batch");
   verb->add_option("--rollout-length", options.rollout_length,
                    "Frames of a truncated roll-out of the recurrence, before it restarts")
       ->capture_default_str();
@@ -87,7 +83,6 @@ void AddTrainMotion(CLI::App& train, Action* action) {
       ->capture_default_str();
   verb->add_flag("--whole-window", request.whole_window,
                  "The networks look at the whole window, not only at where the body is and as far as clothes reach");
-  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
   verb->add_option("--average", options.average,
                    "Keep the average of the weights over the last part of the run, this share of the steps old in the "
                    "mean (0: the last step's)")

@@ -49,10 +49,8 @@ void AddTrainParser(CLI::App& train, Action* action) {
       ->check(CLI::Range(64, 2048))
       ->capture_default_str();
   TrainParserOptions& options = request->options;
-  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
-  verb->add_option("--batch", options.batch, "Crops in a batch")->capture_default_str();
+  AddStepOptions(verb, &options.steps, &options.batch, &options.learning_rate, "Crops in a batch");
   verb->add_option("--crop", options.crop, "Pixels of a crop's side, a multiple of 16")->capture_default_str();
-  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
   verb->add_option("--light-strength", options.light_strength, "Of the change of colours that each crop gets; 0: none")
       ->capture_default_str();
   verb->add_option("--body-error", request->body_error_px,

@@ -24,20 +24,18 @@ void RunTrainPhoto(const TrainPhotoArguments& parsed) {
   TrainPhotoOptions& options = request.options;
   options.config.profile = PhotoProfileNamed(parsed.profile);
   options.config.variant = PhotoVariantNamed(parsed.variant);
-  const TrainPhotoRendererSummary summary = TrainPhotoRenderer(request, CommandCallbacks());
-  PrintLossesOff(summary.losses_off);
-  if (options.perceptual_weight > 0 && summary.perceptual_random_features)
-    PrintRandomFeatures("perceptual loss", "VGG-19");
+  const TrainPhotoSummary summary = TrainPhotoRenderer(request, CommandCallbacks());
+  PrintLosses(summary, options.perceptual_weight > 0 ? "perceptual loss" : nullptr, "VGG-19");
   PrintStep(summary, options.TotalSteps());
-  const PhotoScores& s = summary.scores;
-  if (s.pictures > 0) {
+  const PersonScores& s = summary.scores;
+  if (s.frames > 0) {
     std::printf(
         "validation of %d pairs (%s given): L1 %.4f, PSNR %.2f dB, SSIM %.4f, LPIPS%s %.4f, silhouette IoU %.3f\n",
-        s.pictures, kGivenOfPeople, s.image_l1, s.psnr_db, s.ssim,
+        s.frames, kGivenOfPeople, s.image_l1, s.psnr_db, s.ssim,
         s.lpips_random_features ? " (random-feature substitute)" : "", s.lpips, s.silhouette_iou);
     std::fflush(stdout);
   }
-  PrintEnd(summary, summary.checkpoint, request.out);
+  PrintEnd(summary, request.out);
 }
 
 }  // namespace
@@ -47,11 +45,7 @@ void AddTrainPhoto(CLI::App& train, Action* action) {
   auto parsed = std::make_shared<TrainPhotoArguments>();
   TrainPhotoRendererRequest& request = parsed->request;
   TrainPhotoOptions& options = request.options;
-  verb->add_option("--data", request.data, "A multi-person dataset (bodyloom synth-people), or a single-person dataset")
-      ->required();
-  verb->add_option("--out", request.out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")
-      ->required();
-  verb->add_option("--body", request.body, "The people's body (default: the built-in body)");
+  AddPeopleOptions(verb, &request.data, &request.out, &request.body);
   AddProfileOption(verb, &parsed->profile);
   verb->add_option("--baseline", parsed->variant,
                    "One of the paper's simpler variants: colours completed beforehand; the seen colours warped, "
@@ -60,12 +54,10 @@ void AddTrainPhoto(CLI::App& train, Action* action) {
       ->capture_default_str();
   verb->add_option("--weights", request.weights,
                    "Folder with trained weights: vgg19, sphereface, alexnet, lpips_alex (.safetensors, .pth)");
-  verb->add_option("--steps", options.steps, "Batches to train on")->capture_default_str();
+  AddStepOptions(verb, &options.steps, &options.batch, &options.learning_rate, "Pairs in a batch");
   verb->add_option("--inpaint-steps", options.inpaint_steps,
                    "Of ip's first stage, which comes before (0: as many as --steps)")
       ->capture_default_str();
-  verb->add_option("--batch", options.batch, "Pairs in a batch")->capture_default_str();
-  verb->add_option("--learning-rate", options.learning_rate, "At its highest")->capture_default_str();
   verb->add_option("--gan-weight", options.gan_weight, "Of the discriminator's judgement; 0: none")
       ->capture_default_str();
   verb->add_option("--gan-from", options.gan_from,

@@ -7,6 +7,23 @@
 
 namespace bodyloom {
 
+void AddRunFolderOption(CLI::App* verb, std::string* out) {
+  verb->add_option("--out", *out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, previews")->required();
+}
+
+void AddPeopleOptions(CLI::App* verb, std::string* data, std::string* out, std::string* body) {
+  verb->add_option("--data", *data, "A multi-person dataset (bodyloom synth-people), or a single-person dataset")
+      ->required();
+  AddRunFolderOption(verb, out);
+  verb->add_option("--body", *body, "The people's body (default: the built-in body)");
+}
+
+void AddStepOptions(CLI::App* verb, int* steps, int* batch, double* learning_rate, const char* batch_help) {
+  verb->add_option("--steps", *steps, "Batches to train on")->capture_default_str();
+  verb->add_option("--batch", *batch, batch_help)->capture_default_str();
+  verb->add_option("--learning-rate", *learning_rate, "At its highest")->capture_default_str();
+}
+
 void AddProfileOption(CLI::App* verb, std::string* profile) {
   verb->add_option("--profile", *profile, "Sizes of the networks")
       ->check(CLI::IsMember({"paper", "cpu", "tiny"}))

@@ -15,6 +15,15 @@ class App;
 
 namespace bodyloom {
 
+/// --out.
+void AddRunFolderOption(CLI::App* verb, std::string* out);
+
+/// --data of a multi-person dataset, --out, --body.
+void AddPeopleOptions(CLI::App* verb, std::string* data, std::string* out, std::string* body);
+
+/// --steps, --batch, --learning-rate. `batch_help`: "Pairs in a batch".
+void AddStepOptions(CLI::App* verb, int* steps, int* batch, double* learning_rate, const char* batch_help);
+
 /// --profile.
 void AddProfileOption(CLI::App* verb, std::string* profile);
 

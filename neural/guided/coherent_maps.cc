@@ -48,7 +48,7 @@ CoherentMaps EmptyMaps(int size, std::span<const uint8_t> texel_parts) {
           {}};
 }
 
-int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8_t from,
+int FillEmptyTexels(const PhotoFrame& frame, const PersonPicture& picture, uint8_t from,
                     std::span<const uint8_t> no_face, CoherentMaps* maps) {
   const size_t texels = maps->from.size(), pixels = size_t(frame.size) * frame.size;
   BODYLOOM_CHECK(from > 0 && frame.texture_size == maps->size && frame.texel_cosine.size() == texels &&
@@ -80,13 +80,30 @@ int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8
   return filled;
 }
 
-GuidedPicture OwnPicture(const PhotoFrame& frame) {
+PersonPicture OwnPicture(const PhotoFrame& frame) {
   const size_t pixels = size_t(frame.size) * frame.size;
   BODYLOOM_CHECK(frame.image.size() == 3 * pixels && frame.labels.size() == pixels, "coherent maps: a frame of ",
                  frame.size, " px has an image of ", frame.image.size(), " and ", frame.labels.size(), " labels");
-  GuidedPicture picture{frame.size, frame.image, std::vector<float>(pixels), frame.labels};
+  PersonPicture picture{frame.size, frame.image, std::vector<float>(pixels), frame.labels};
   for (size_t i = 0; i < pixels; ++i) picture.alpha[i] = frame.labels[i] != 0 ? 1.0F : 0.0F;
   return picture;
+}
+
+CoherentMaps MapsOf(std::span<const PhotoFrame> photos, std::span<const uint8_t> texel_parts) {
+  CoherentMaps maps = EmptyMaps(photos.front().texture_size, texel_parts);
+  for (size_t k = 0; k < photos.size(); ++k) {
+    FillEmptyTexels(photos[k], OwnPicture(photos[k]), static_cast<uint8_t>(k + 1), {}, &maps);
+  }
+  return maps;
+}
+
+double ShareFilled(const CoherentMaps& maps, size_t pictures) {
+  double filled = 0, atlas = 0;
+  for (size_t i = 0; i < maps.from.size(); ++i) {
+    atlas += maps.texel_parts[i] != 0 ? 1 : 0;
+    filled += maps.from[i] != 0 && maps.from[i] <= pictures ? 1 : 0;
+  }
+  return filled / std::max(1.0, atlas);
 }
 
 PseudoPicture LookUp(const CoherentMaps& maps, const PhotoFrame& frame) {

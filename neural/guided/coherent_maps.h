@@ -10,20 +10,12 @@
 #include <span>
 #include <vector>
 
+#include "neural/base/person_picture.h"
 #include "render/texture/photo_frame.h"
 
 namespace bodyloom {
 
-// A picture that the pose-guided renderer made, and what it was given to begin with. Planar, size × size.
-
-struct GuidedPicture {
-  int size = 0;
-  std::vector<float> image;     ///< 3, RGB in [0, 1] multiplied by alpha
-  std::vector<float> alpha;     ///< 1, the silhouette
-  std::vector<uint8_t> labels;  ///< garment labels; 0 where alpha is below ½
-};
-
-/// G̃, Ĩ, S̃: what is known of a pose before anything is completed.
+/// G̃, Ĩ, S̃: what is known of a pose before anything is completed. Planar, size × size.
 struct PseudoPicture {
   int size = 0;
   std::vector<float> image;     ///< 3; 0 where nothing is known
@@ -47,11 +39,17 @@ CoherentMaps EmptyMaps(int size, std::span<const uint8_t> texel_parts);
 /// Fills the empty texels that the frame's body shows inside the person: label of the nearest pixel, mean colour of the
 /// four around it that belong to the person (divided by alpha). `from`: 1 to 255. `no_face`: U × U or empty; texels
 /// that are not filled where the picture shows a face. Returns how many were filled.
-int FillEmptyTexels(const PhotoFrame& frame, const GuidedPicture& picture, uint8_t from,
+int FillEmptyTexels(const PhotoFrame& frame, const PersonPicture& picture, uint8_t from,
                     std::span<const uint8_t> no_face, CoherentMaps* maps);
 
 /// The frame's own picture, from its image and labels: alpha is 1 where a label is not 0.
-GuidedPicture OwnPicture(const PhotoFrame& frame);
+PersonPicture OwnPicture(const PhotoFrame& frame);
+
+/// What photos show of the body and no more: photo i fills texels as picture i + 1.
+CoherentMaps MapsOf(std::span<const PhotoFrame> photos, std::span<const uint8_t> texel_parts);
+
+/// Share of the atlas that the first `pictures` pictures of the maps filled.
+double ShareFilled(const CoherentMaps& maps, size_t pictures);
 
 /// What the maps show of a pose, at the pixels of the bare body: bilinear among the filled texels of the pixel's part;
 /// label of the nearest of them. Nothing where less than half the weight is filled. The extent is bilinear among all.

@@ -28,7 +28,7 @@ PixelBox BodyBox(const PhotoFrame& frame) {
 }
 
 /// Of the pixels of a label; false where there are not enough.
-bool MeanColour(const GuidedPicture& picture, uint8_t label, std::array<float, 3>* colour) {
+bool MeanColour(const PersonPicture& picture, uint8_t label, std::array<float, 3>* colour) {
   const size_t pixels = picture.alpha.size();
   std::array<double, 3> sum{};
   double weight = 0;
@@ -67,7 +67,7 @@ int Onto(int v, int from_first, int from_last, int to_first, int to_last) {
 }
 
 /// Where a network paints a face against its pseudo input, the pseudo input.
-void TakeAwayFaces(const PseudoPicture& pseudo, GuidedPicture* picture) {
+void TakeAwayFaces(const PseudoPicture& pseudo, PersonPicture* picture) {
   const size_t pixels = picture->alpha.size();
   for (size_t i = 0; i < pixels; ++i) {
     if (picture->labels[i] != kFaceLabel || pseudo.known[i] == 0 || pseudo.labels[i] == kFaceLabel) continue;
@@ -87,7 +87,7 @@ std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& 
   return texels;
 }
 
-PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& picture, const PhotoFrame& back,
+PseudoPicture MirroredFront(const PhotoFrame& front, const PersonPicture& picture, const PhotoFrame& back,
                             const CoherentMaps& maps) {
   const PixelBox from = BodyBox(back), to = BodyBox(front);
   const size_t pixels = size_t(back.size) * back.size;
@@ -117,12 +117,12 @@ PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& pictur
   return pseudo;
 }
 
-std::vector<GuidedPicture> CompleteMaps(std::span<const PhotoFrame> views, const DrawPose& draw, int first_number,
+std::vector<PersonPicture> CompleteMaps(std::span<const PhotoFrame> views, const DrawPose& draw, int first_number,
                                         CoherentMaps* maps) {
   BODYLOOM_CHECK(views.size() == kNumVirtualViews, "virtual views: ", views.size(), ", expected ",
                  int(kNumVirtualViews));
   const std::vector<uint8_t> no_face = TexelsOfTheBack(views[kViewFront], views[kViewBack]);
-  std::vector<GuidedPicture> pictures;
+  std::vector<PersonPicture> pictures;
   for (int v = 0; v < kNumVirtualViews; ++v) {
     PseudoPicture pseudo = LookUp(*maps, views[v]);
     if (v == kViewBack) {

@@ -21,17 +21,17 @@ namespace bodyloom {
 enum VirtualView { kViewFront, kViewBack, kViewLeft, kViewRight, kViewTop, kViewBottom, kNumVirtualViews };
 
 /// Draws a pose from its pseudo inputs.
-using DrawPose = std::function<GuidedPicture(const PhotoFrame& frame, const PseudoPicture& pseudo)>;
+using DrawPose = std::function<PersonPicture(const PhotoFrame& frame, const PseudoPicture& pseudo)>;
 
 /// Texels that the back view sees and the front view does not.
 std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& back);
 
 /// Pseudo inputs of the back view. `maps`: whose hair stands behind the face where the picture shows none.
-PseudoPicture MirroredFront(const PhotoFrame& front, const GuidedPicture& picture, const PhotoFrame& back,
+PseudoPicture MirroredFront(const PhotoFrame& front, const PersonPicture& picture, const PhotoFrame& back,
                             const CoherentMaps& maps);
 
 /// `views` in the order of VirtualView; texels are marked first_number, first_number + 1, … Returns the six pictures.
-std::vector<GuidedPicture> CompleteMaps(std::span<const PhotoFrame> views, const DrawPose& draw, int first_number,
+std::vector<PersonPicture> CompleteMaps(std::span<const PhotoFrame> views, const DrawPose& draw, int first_number,
                                         CoherentMaps* maps);
 
 }  // namespace bodyloom

@@ -8,7 +8,7 @@ namespace bodyloom {
 
 using torch::Tensor;
 
-GuidedPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
+PersonPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
                          const PseudoPicture& pseudo, int reach, double* share) {
   GuidedModelImpl& networks = **model;
   const int size = networks.config.profile.image_size, multiple = networks.config.Multiple();

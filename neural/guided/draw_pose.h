@@ -11,7 +11,7 @@ namespace bodyloom {
 /// The networks see the box of cells that the body, grown by `reach` pixels, lies in; what is farther from the body
 /// than that is background. reach 0: the whole window. An empty picture where the frame shows no body. `share` (may be
 /// null): of the window that was computed.
-GuidedPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
+PersonPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
                          const PseudoPicture& pseudo, int reach, double* share);
 
 }  // namespace bodyloom

@@ -2,8 +2,6 @@
 #include "neural/guided/guided_renderer.h"
 
 #include "geometry/base/check.h"
-#include "neural/base/device.h"
-#include "neural/base/runtime.h"
 #include "neural/guided/draw_pose.h"
 #include "neural/guided/guided_model.h"
 #include "neural/guided/guided_tensors.h"
@@ -17,14 +15,7 @@ class GuidedRenderer::Impl {
       : config_(config), options_(options) {
     std::string why;
     BODYLOOM_CHECK(config.IsValid(&why), "pose-guided renderer: ", why);
-    StartNeuralRuntime(options.num_threads);
-    UseNeuralDevice(options.device);
-    model_ = GuidedModel(config);
-    model_->to(NeuralDevice());
-    Checkpoint checkpoint(ToText(config));
-    checkpoint.Add("model", model_.ptr().get());
-    checkpoint.Load(path, CheckpointPart::kModules);
-    model_->eval();
+    model_ = LoadModel<GuidedModel>(path, config, options.num_threads, options.device);
   }
 
   void SetSource(std::span<const PhotoFrame> photos, const SourceBody& body) {
@@ -45,7 +36,7 @@ class GuidedRenderer::Impl {
 
   [[nodiscard]] MapCompletion completion() const { return options_.completion.value_or(config_.Completion()); }
 
-  GuidedPicture Render(const PhotoFrame& frame) {
+  PersonPicture Render(const PhotoFrame& frame) {
     BODYLOOM_CHECK(source_.maps.size > 0, "pose-guided renderer: no source yet");
     ++frames_;
     if (last_.size > 0 && frame.uv == last_uv_ && frame.parts == last_parts_) {
@@ -63,9 +54,9 @@ class GuidedRenderer::Impl {
   double computed_ = 0;  ///< windows
 
  private:
-  GuidedPicture Draw(const PhotoFrame& frame, const PseudoPicture& pseudo) {
+  PersonPicture Draw(const PhotoFrame& frame, const PseudoPicture& pseudo) {
     double share = 0;
-    GuidedPicture picture = DrawGuided(&model_, codes_, frame, pseudo, options_.reach, &share);
+    PersonPicture picture = DrawGuided(&model_, codes_, frame, pseudo, options_.reach, &share);
     computed_ += share;
     ++drawn_;
     return picture;
@@ -75,7 +66,7 @@ class GuidedRenderer::Impl {
   GuidedRendererOptions options_;
   GuidedModel model_{nullptr};
   GuidedSource codes_;
-  GuidedPicture last_;
+  PersonPicture last_;
   std::vector<float> last_uv_;
   std::vector<uint8_t> last_parts_;
 
@@ -91,10 +82,10 @@ GuidedRenderer::~GuidedRenderer() = default;
 void GuidedRenderer::SetSource(std::span<const PhotoFrame> photos, const SourceBody& body) {
   impl_->SetSource(photos, body);
 }
-GuidedPicture GuidedRenderer::Render(const PhotoFrame& frame) { return impl_->Render(frame); }
+PersonPicture GuidedRenderer::Render(const PhotoFrame& frame) { return impl_->Render(frame); }
 MapCompletion GuidedRenderer::completion() const { return impl_->completion(); }
 const CoherentMaps& GuidedRenderer::maps() const { return impl_->source_.maps; }
-const std::vector<GuidedPicture>& GuidedRenderer::virtual_pictures() const { return impl_->source_.virtual_pictures; }
+const std::vector<PersonPicture>& GuidedRenderer::virtual_pictures() const { return impl_->source_.virtual_pictures; }
 int64_t GuidedRenderer::frames_kept() const { return impl_->frames_kept_; }
 double GuidedRenderer::computed_share() const {
   return impl_->drawn_ > 0 ? impl_->computed_ / static_cast<double>(impl_->drawn_) : 0;

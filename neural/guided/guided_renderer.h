@@ -38,13 +38,13 @@ class GuidedRenderer {
   void SetSource(std::span<const PhotoFrame> photos, const SourceBody& body);
 
   /// The person in another pose; after SetSource.
-  GuidedPicture Render(const PhotoFrame& frame);
+  PersonPicture Render(const PhotoFrame& frame);
 
   [[nodiscard]] const CoherentMaps& maps() const;
   /// Which way the maps are completed.
   [[nodiscard]] MapCompletion completion() const;
   /// The virtual views as the networks drew them; empty where none were.
-  [[nodiscard]] const std::vector<GuidedPicture>& virtual_pictures() const;
+  [[nodiscard]] const std::vector<PersonPicture>& virtual_pictures() const;
   /// Frames that were those before: they were not computed again.
   [[nodiscard]] int64_t frames_kept() const;
   /// Share of the window's pixels that the networks computed, mean over frames.

@@ -157,10 +157,10 @@ GuidedSource CroppedEach(const GuidedSource& source, std::span<const CodeBox> bo
           {CropEach(source.render_code.mean, boxes, 1), CropEach(source.render_code.log_variance, boxes, 1)}};
 }
 
-GuidedPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
+PersonPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
                         int multiple, int size) {
   const size_t pixels = size_t(size) * size;
-  GuidedPicture picture{size, std::vector<float>(3 * pixels), std::vector<float>(pixels), std::vector<uint8_t>(pixels)};
+  PersonPicture picture{size, std::vector<float>(3 * pixels), std::vector<float>(pixels), std::vector<uint8_t>(pixels)};
   const std::vector<float> image = HostValues<float>(result.image[b]), alpha = HostValues<float>(result.silhouette[b]);
   // Where the silhouette has the person GarNet's likeliest garment counts, whatever it thinks of the background.
   const std::vector<float> labels = HostValues<float>(

@@ -43,7 +43,7 @@ GuidedSource CroppedEach(const GuidedSource& source, std::span<const CodeBox> bo
 
 /// The picture of frame b, laid into a window of `size` pixels. Labels are those of `result` where alpha is at least ½
 /// (1 where GarNet predicts background or there is none), of `pseudo` where there is no GarNet and it knows them.
-GuidedPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
+PersonPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
                         int multiple, int size);
 
 }  // namespace bodyloom

@@ -29,7 +29,7 @@ struct SourceBody {
 struct SourceMaps {
   CoherentMaps maps;    ///< texels of photo i are from i + 1, the others from larger numbers
   int texels_seen = 0;  ///< that the photos filled
-  std::vector<GuidedPicture> virtual_pictures;
+  std::vector<PersonPicture> virtual_pictures;
 };
 
 /// Of several photos the one that sees a texel at the largest cosine fills it, the first of equals. What a photo shows

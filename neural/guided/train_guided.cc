@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,7 +11,6 @@
 #include "geometry/base/check.h"
 #include "geometry/base/prefetcher.h"
 #include "neural/base/device.h"
-#include "neural/base/runtime.h"
 #include "neural/guided/choose_photos.h"
 #include "neural/guided/draw_pose.h"
 #include "neural/guided/guided_batches.h"
@@ -21,77 +20,49 @@
 #include "neural/losses/contextual_loss.h"
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
-#include "neural/networks/vgg.h"
-#include "neural/training/optimizers.h"
-#include "neural/training/training_loop.h"
+#include "neural/training/renderer_trainer.h"
 
 namespace bodyloom {
 namespace {
 
 using torch::Tensor;
 
-const std::vector<std::string> kGuidedColumns = {"learning_rate",
-                                                 "silhouette",
-                                                 "labels",
-                                                 "image",
-                                                 "outline",
-                                                 "perceptual",
-                                                 "contextual",
-                                                 "generator",
-                                                 "kl",
-                                                 "discriminator",
-                                                 "render",
-                                                 "validation_l1",
-                                                 "validation_psnr_db",
-                                                 "validation_silhouette_iou",
-                                                 "validation_label_iou",
-                                                 "validation_lpips",
-                                                 "validation_contextual"};
-
 enum Balanced { kPerceptual, kContextual, kGan, kKl, kNumBalanced };
 
-struct GuidedLosses {
-  double silhouette = 0, labels = 0, image = 0, mask = 0, discriminator = 0, render = 0, total = 0;
-  std::array<double, kNumBalanced> balanced{};
-  [[nodiscard]] bool IsFinite() const {
-    double sum = total + discriminator;
-    for (const double loss : balanced) sum += loss;
-    return std::isfinite(sum);
-  }
-};
+constexpr const char* kBalancedNames[kNumBalanced] = {"perceptual", "contextual", "generator", "kl"};
 
-class GuidedTrainer : public TrainedSystem {
+class GuidedTrainer : public RendererTrainer {
  public:
   GuidedTrainer(const PhotoSource& people, const TrainGuidedOptions& options)
-      : people_(people), options_(options), config_(options.config), balance_(kNumBalanced, options.balance_steps) {
+      : RendererTrainer(options, options.steps, ToText(options.config),
+                        {"silhouette", "labels", "image", "outline", "perceptual", "contextual", "generator", "kl",
+                         "discriminator", "render"},
+                        {"image"}),
+        people_(people),
+        options_(options),
+        config_(options.config),
+        balance_(kNumBalanced, options.balance_steps) {
     if (config_.NeedsNeighbours()) {
       neighbours_.emplace(people.texture_size, people.texel_parts, people.texel_places);
     }
-    torch::manual_seed(options.seed);
     model_ = GuidedModel(config_);
     discriminator_ = GuidedDiscriminator(config_);
     model_->to(NeuralDevice());
     discriminator_->to(NeuralDevice());
     vgg_ = MakeFeatureNetwork(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"}, options.vgg16,
                               config_.profile.perceptual_divisor);
+    checkpoint_.Add("model", model_.ptr().get());
+    AddJudge(discriminator_.ptr());
     // One optimizer is three: Adam treats every weight by itself, and no loss reaches two networks.
-    optimizer_ = MakeAdam(*model_, options.learning_rate);
-    discriminator_optimizer_ = MakeAdam(*discriminator_, options.discriminator_rate);
-    checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
-    checkpoint_->config_json = options.config_json;
-    checkpoint_->Add("model", model_.ptr().get());
-    checkpoint_->Add("discriminator", discriminator_.ptr().get());
-    checkpoint_->Add("optimizer", optimizer_.get());
-    checkpoint_->Add("discriminator_optimizer", discriminator_optimizer_.get());
-    checkpoint_->Add("loss_weights", balance_.state());
+    optimizer_ = AddOptimizer("optimizer", *model_, options.learning_rate);
+    discriminator_optimizer_ = AddOptimizer("discriminator_optimizer", *discriminator_, options.discriminator_rate);
+    checkpoint_.Add("loss_weights", balance_.state());
   }
 
   TrainGuidedSummary Run() {
     TrainGuidedSummary summary;
     model_->train();
-    static_cast<TrainingOutcome&>(summary) =
-        RunTraining(options_, options_.steps, kGuidedColumns, checkpoint_.get(), this);
-    summary.perceptual_random_features = vgg_->has_random_features;
+    static_cast<RendererTraining&>(summary) = Train();
     summary.scores = scores_;
     if (balance_.IsSet()) {
       for (int i = 0; i < kNumBalanced; ++i) summary.loss_weights.push_back(balance_.Weight(i));
@@ -107,17 +78,12 @@ class GuidedTrainer : public TrainedSystem {
         });
   }
 
-  bool Step(int step) override {
-    losses_ = Learn(batches_->Take(), step);
-    return losses_.IsFinite();
-  }
-
   [[nodiscard]] bool HasValidation() const override { return !options_.validation.num_frames.empty(); }
 
   void Validate(int done, bool last) override {
     model_->eval();
     const PhotoSource& people = options_.validation;
-    GuidedScorer scorer(last, options_.score_weights);
+    PersonScorer scorer(last ? LikenessScoring(options_.score_weights) : PersonScoring());
     std::vector<GuidedPreview> previews;
     const int count = std::min(static_cast<int>(people.num_frames.size()), options_.validation_people);
     for (int person = 0; person < count; ++person) {
@@ -161,31 +127,20 @@ class GuidedTrainer : public TrainedSystem {
     if (options_.preview) options_.preview(done, previews);
   }
 
-  [[nodiscard]] std::vector<double> Row(int done) const override {
-    return {LinearDecayOverLastHalf(options_.learning_rate, done - 1, options_.steps),
-            losses_.silhouette,
-            losses_.labels,
-            losses_.image,
-            losses_.mask,
-            losses_.balanced[kPerceptual],
-            losses_.balanced[kContextual],
-            losses_.balanced[kGan],
-            losses_.balanced[kKl],
-            losses_.discriminator,
-            losses_.render};
-  }
-
-  [[nodiscard]] std::vector<double> ScoreRow() const override {
-    return {scores_.image_l1,  scores_.psnr_db, scores_.silhouette_iou,
-            scores_.label_iou, scores_.lpips,   scores_.contextual};
-  }
-
-  bool Report(int done, double seconds) override {
-    return !options_.progress ||
-           options_.progress({done, options_.steps, losses_.total, losses_.image, scores_, seconds});
+  [[nodiscard]] std::vector<TrainingFigure> ScoreRow() const override {
+    return {{"validation_l1", scores_.image_l1},
+            {"validation_psnr_db", scores_.psnr_db},
+            {"validation_silhouette_iou", scores_.silhouette_iou},
+            {"validation_label_iou", scores_.label_iou},
+            {"validation_lpips", scores_.lpips},
+            {"validation_contextual", scores_.contextual}};
   }
 
  private:
+  [[nodiscard]] double ValidationPsnr() const override {
+    return scores_.frames > 0 ? scores_.psnr_db : std::numeric_limits<double>::quiet_NaN();
+  }
+
   [[nodiscard]] double Share(int loss) const {
     return std::array{options_.perceptual_share, options_.contextual_share, options_.gan_share,
                       config_.kl && config_.latent ? options_.kl_share : 0.0}[loss];
@@ -207,97 +162,70 @@ class GuidedTrainer : public TrainedSystem {
     return {silhouette.detach(), classes};
   }
 
-  GuidedLosses Learn(const GuidedBatch& batch, int step) {
-    SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step, options_.steps));
-    SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
+  bool Learn(int step) override {
+    const GuidedBatch batch = batches_->Take();
     const GuidedTensors& truth = batch.target;
-    GuidedLosses losses;
     const GuidedSource source = CroppedEach(model_->EncodeSource(batch.source), batch.boxes);
     const CodeBox whole = batch.Whole();
-    Tensor total = torch::zeros({}, truth.image.options());
+    Tensor total;
     Tensor silhouette_logits;
     if (config_.silhouettes) {
       silhouette_logits = model_->Silhouette(source, truth.pose, batch.pseudo, whole);
-      const Tensor loss = L1Loss(torch::sigmoid(silhouette_logits), truth.silhouette);
-      losses.silhouette = loss.item<double>();
-      total = total + loss;
+      Add("silhouette", 1, L1Loss(torch::sigmoid(silhouette_logits), truth.silhouette), &total);
     }
     if (config_.garments) {
       const Tensor logits = model_->Labels(source, truth.pose, config_.silhouettes ? truth.silhouette : Tensor(),
                                            batch.pseudo.classes, whole);
       const Tensor one_hot = OneHot(truth.classes.squeeze(1).to(torch::kLong), kPhotoLabels);
-      const Tensor loss =
-          options_.labels_by_cross_entropy ? SoftLabelCrossEntropy(logits, one_hot) : SoftLabelL1Loss(logits, one_hot);
-      losses.labels = loss.item<double>();
-      total = total + loss;
+      Add("labels", 1,
+          options_.labels_by_cross_entropy ? SoftLabelCrossEntropy(logits, one_hot) : SoftLabelL1Loss(logits, one_hot),
+          &total);
     }
     const auto [silhouette, classes] = RenderInputs(batch, source, silhouette_logits, step);
     const RenderCode& code = source.render_code;
     const Tensor noise = code.log_variance.defined() ? RandnLike(code.mean) : Tensor();
     const auto [image, mask] = model_->Render(Draw(code, noise), truth.pose, silhouette, classes, batch.pseudo, whole);
-    Tensor render = L1Loss(image, truth.image);
-    losses.image = render.item<double>();
-    if (!config_.silhouettes && !config_.garments) {
-      const Tensor loss = L1Loss(mask, truth.silhouette);
-      losses.mask = loss.item<double>();
-      render = render + loss;
+    Tensor render;
+    Add("image", 1, L1Loss(image, truth.image), &render);
+    if (!config_.silhouettes && !config_.garments) Add("outline", 1, L1Loss(mask, truth.silhouette), &render);
+    if (options_.gan_share > 0 && !LearnToJudge(DiscriminatorLoss({discriminator_(Judged(truth, truth.image))},
+                                                                  {discriminator_(Judged(truth, image.detach()))}),
+                                                discriminator_optimizer_)) {
+      return false;
     }
-    if (options_.gan_share > 0) losses.discriminator = StepDiscriminator(truth, image.detach());
-    render = render + BalancedLosses(batch, image, code, step, &losses);
-    losses.render = render.item<double>();
-    total = total + render;
-    losses.total = total.item<double>();
-    if (!losses.IsFinite()) return losses;  // a step would spoil the weights
-    optimizer_->zero_grad();
-    total.backward();
-    RequireGradients(discriminator_.get(), true);
-    optimizer_->step();
-    balance_.Measure(losses.image, losses.balanced);
-    return losses;
+    render = render + BalancedLosses(batch, image, code, step);
+    Add("render", 1, render, &total);
+    if (!Descend(total, {optimizer_})) return false;
+    std::array<double, kNumBalanced> balanced{};
+    for (int i = 0; i < kNumBalanced; ++i) balanced[i] = Noted(kBalancedNames[i]);
+    balance_.Measure(Noted("image"), balanced);
+    return true;
   }
 
   [[nodiscard]] Tensor Judged(const GuidedTensors& truth, const Tensor& image) const {
     return torch::cat({model_->LabelMap(truth.classes), image}, 1);
   }
 
-  double StepDiscriminator(const GuidedTensors& truth, const Tensor& image) {
-    RequireGradients(discriminator_.get(), true);
-    discriminator_optimizer_->zero_grad();
-    const Tensor loss =
-        DiscriminatorLoss({discriminator_(Judged(truth, truth.image))}, {discriminator_(Judged(truth, image))});
-    const double value = loss.item<double>();
-    if (!std::isfinite(value)) return value;
-    loss.backward();
-    discriminator_optimizer_->step();
-    return value;
-  }
-
   /// λ-weighted sum; while the weights are not set the losses are only measured.
-  Tensor BalancedLosses(const GuidedBatch& batch, const Tensor& image, const RenderCode& code, int step,
-                        GuidedLosses* losses) {
+  Tensor BalancedLosses(const GuidedBatch& batch, const Tensor& image, const RenderCode& code, int step) {
     const torch::AutoGradMode mode(balance_.IsSet());
     Tensor sum = torch::zeros({}, image.options().requires_grad(false));
     const auto add = [&](Balanced which, const Tensor& loss) {
-      losses->balanced[which] = loss.item<double>();
+      Note(kBalancedNames[which], loss.item<double>());
       if (balance_.IsSet()) sum = sum + Share(which) * balance_.Weight(which) * loss;
     };
     if (Share(kPerceptual) > 0 || Share(kContextual) > 0) {
-      std::vector<Tensor> target;
-      {
-        const torch::NoGradGuard no_grad;
-        target = vgg_(batch.target.image);
-      }
-      const std::vector<Tensor> features = vgg_(image);
-      if (Share(kPerceptual) > 0) add(kPerceptual, PerceptualLoss(features, target));
+      const SeenPair seen = See(image, batch.target.image);
+      if (Share(kPerceptual) > 0) add(kPerceptual, PerceptualLoss(seen.picture, seen.truth));
       if (Share(kContextual) > 0) {
         ContextualOptions contextual;
         contextual.max_points = config_.profile.contextual_points;
         contextual.seed = static_cast<uint64_t>(step);
-        add(kContextual, ContextualLoss(features[2], target[2], contextual));
+        add(kContextual, ContextualLoss(seen.picture[2], seen.truth[2], contextual));
       }
     }
     if (Share(kGan) > 0) {
-      RequireGradients(discriminator_.get(), false);
+      OnlyJudge();
       add(kGan, GeneratorLoss({discriminator_(Judged(batch.target, image))}));
     }
     if (code.log_variance.defined() && Share(kKl) > 0) {
@@ -314,12 +242,9 @@ class GuidedTrainer : public TrainedSystem {
   std::optional<TexelNeighbours> neighbours_;  ///< where the maps are completed by them
   GuidedModel model_{nullptr};
   PatchDiscriminator discriminator_{nullptr};
-  FeatureNetwork vgg_{nullptr};
-  std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
-  std::unique_ptr<Checkpoint> checkpoint_;
-  GuidedScores scores_;
+  Adam *optimizer_ = nullptr, *discriminator_optimizer_ = nullptr;
+  PersonScores scores_;
   std::vector<int> photos_;                           ///< of the people validated on
-  GuidedLosses losses_;                               ///< of the last step
   std::unique_ptr<Prefetcher<GuidedBatch>> batches_;  ///< last: its thread uses the rest
 };
 
@@ -342,8 +267,6 @@ TrainGuidedSummary TrainGuided(const PhotoSource& people, const TrainGuidedOptio
   BODYLOOM_CHECK(!people.num_frames.empty() && people.fill, "pose-guided training: nobody to train on");
   BODYLOOM_CHECK(people.size == options.config.profile.image_size, "pose-guided training: pictures of ", people.size,
                  " px, expected ", options.config.profile.image_size);
-  StartNeuralRuntime(options.num_threads);
-  UseNeuralDevice(options.device);
   return GuidedTrainer(people, options).Run();
 }
 

@@ -22,7 +22,7 @@
 
 #include "neural/guided/coherent_maps.h"
 #include "neural/guided/guided_config.h"
-#include "neural/guided/guided_scores.h"
+#include "neural/metrics/person_scores.h"
 #include "neural/networks/named_weights.h"
 #include "neural/training/training_run.h"
 #include "render/texture/photo_frame.h"
@@ -34,14 +34,7 @@ struct GuidedPreview {
   int person = 0, frame = 0;
   PhotoFrame source, truth;
   PseudoPicture pseudo;
-  GuidedPicture picture;
-};
-
-struct TrainGuidedProgress {
-  int step = 0, steps = 0;
-  double loss = 0, image = 0;  ///< of the last step
-  GuidedScores scores;         ///< of the last validation
-  double seconds = 0;
+  PersonPicture picture;
 };
 
 struct TrainGuidedOptions : TrainingRun {
@@ -60,16 +53,14 @@ struct TrainGuidedOptions : TrainingRun {
   double predicted_from = 2.0 / 3;  ///< 1: never
   int reach = 0;      ///< pixels that clothes reach beyond the body (0: not known, validates on whole windows)
   WeightsFrom vgg16;  ///< empty: a seeded random-feature substitute
-  GuidedScoreWeights score_weights;                          ///< of the last validation
-  std::function<bool(const TrainGuidedProgress&)> progress;  ///< return false to stop after a checkpoint
+  LikenessWeights score_weights;  ///< of the last validation
   std::function<void(int step, const std::vector<GuidedPreview>&)> preview;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-struct TrainGuidedSummary : TrainingOutcome {
-  GuidedScores scores;
+struct TrainGuidedSummary : RendererTraining {
+  PersonScores scores;
   std::vector<double> loss_weights;  ///< λ of VGG, contextual, adversarial, KL; empty while they are not set
-  bool perceptual_random_features = true;
 };
 
 /// Throws std::invalid_argument for options that are not valid, std::runtime_error for files that cannot be used.

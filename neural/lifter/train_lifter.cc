@@ -19,17 +19,6 @@ namespace {
 using torch::Tensor;
 
 constexpr uint64_t kValidationSeeds = uint64_t{1} << 62;
-const std::vector<std::string> kLifterColumns = {"learning_rate",
-                                                 "loss",
-                                                 "distance",
-                                                 "nll",
-                                                 "velocity",
-                                                 "up",
-                                                 "contact",
-                                                 "gradient_norm",
-                                                 "validation_distance",
-                                                 "validation_best_distance"};
-
 struct Batch {
   Tensor features;  ///< B×inputs×T
   LifterTargets targets;
@@ -100,8 +89,7 @@ class LifterTrainer : public TrainedSystem {
 
   TrainLifterResult Run() {
     TrainLifterResult result;
-    static_cast<TrainingOutcome&>(result.summary) =
-        RunTraining(options_, options_.steps, kLifterColumns, &checkpoint_, this);
+    static_cast<TrainingOutcome&>(result.summary) = RunTraining(options_, options_.steps, &checkpoint_, this);
     result.summary.validation_distance = distance_;
     result.summary.validation_best_distance = best_distance_;
     result.weights = ExportLifter(average_);
@@ -143,25 +131,31 @@ class LifterTrainer : public TrainedSystem {
     best_distance_ = best / std::max(1, done);
   }
 
-  [[nodiscard]] std::vector<double> Row(int done) const override {
-    return {LearningRate(options_, done - 1),
-            loss_.total.item<double>(),
-            loss_.distance,
-            loss_.nll,
-            loss_.velocity,
-            loss_.up,
-            loss_.contact,
-            gradient_norm_};
+  [[nodiscard]] std::vector<TrainingFigure> Row(int done) const override {
+    return {{"learning_rate", LearningRate(options_, done - 1)},
+            {"loss", Total()},
+            {"distance", loss_.distance},
+            {"nll", loss_.nll},
+            {"velocity", loss_.velocity},
+            {"up", loss_.up},
+            {"contact", loss_.contact},
+            {"gradient_norm", gradient_norm_}};
   }
 
-  [[nodiscard]] std::vector<double> ScoreRow() const override { return {distance_, best_distance_}; }
+  [[nodiscard]] std::vector<TrainingFigure> ScoreRow() const override {
+    return {{"validation_distance", distance_}, {"validation_best_distance", best_distance_}};
+  }
 
-  bool Report(int done, double seconds) override {
-    return !options_.progress || options_.progress({done, options_.steps, loss_.total.item<double>(), loss_.distance,
-                                                    loss_.nll, distance_, seconds});
+  [[nodiscard]] std::vector<TrainingFigure> Figures() const override {
+    std::vector<TrainingFigure> figures = {{"distance", loss_.distance}};
+    if (distance_ > 0) figures.push_back({"validation", distance_});
+    return figures;
   }
 
  private:
+  /// 0 before the first step.
+  [[nodiscard]] double Total() const { return loss_.total.defined() ? loss_.total.item<double>() : 0; }
+
   LifterLoss Learn(const Batch& batch, int step) {
     const double rate = LearningRate(options_, step);
     SetRate(optimizer_.get(), rate);

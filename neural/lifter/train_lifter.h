@@ -28,13 +28,6 @@ struct LifterExample {
 /// Fills the example that belongs to a seed; called from several threads.
 using LifterSource = std::function<void(uint64_t seed, LifterExample* example)>;
 
-struct TrainLifterProgress {
-  int step = 0, steps = 0;
-  double loss = 0, distance = 0, nll = 0;
-  double validation_distance = 0;  ///< of the last validation, 0 before the first
-  double seconds = 0;              ///< since this process began training
-};
-
 struct TrainLifterOptions : TrainingRun {
   const LifterWeights* begin_with = nullptr;  ///< of the same sizes; null: seeded random numbers
   TrainLifterOptions() {
@@ -54,8 +47,6 @@ struct TrainLifterOptions : TrainingRun {
   double average = 0.998;  ///< of the moving average of the weights
   double nll_weight = 0.05, velocity_weight = 0.3;
   int validation_windows = 256;
-  /// Return false to stop after a checkpoint.
-  std::function<bool(const TrainLifterProgress&)> progress;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "neural/base/device.h"
-#include "neural/base/runtime.h"
 #include "neural/motion/frame_tensors.h"
 #include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
@@ -12,29 +11,14 @@
 
 namespace bodyloom {
 
-namespace {
-
-MotionModel Loaded(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options) {
-  StartNeuralRuntime(options.num_threads);
-  UseNeuralDevice(options.device);
-  MotionModel model(config);
-  model->to(NeuralDevice());
-  Checkpoint checkpoint(ToText(config));
-  checkpoint.Add("model", model.ptr().get());
-  checkpoint.Load(path, CheckpointPart::kModules);
-  model->eval();
-  return model;
-}
-
-}  // namespace
-
 class MotionRenderer::Impl {
  public:
   Impl(const std::string& path, const MotionConfig& config, const MotionRendererOptions& options)
       : config_(config),
         score_(options.score),
         scorer_(config_, {options.lpips, options.ssim}),
-        roll_(Loaded(path, config, options), options.warmup_iterations, {options.reach, options.anywhere}) {}
+        roll_(LoadModel<MotionModel>(path, config, options.num_threads, options.device), options.warmup_iterations,
+              {options.reach, options.anywhere}) {}
 
   MotionPicture Next(const MotionFrame& frame) {
     const MotionStepResult result = roll_.Next(frame);

@@ -2,56 +2,37 @@
 #include "neural/motion/train_motion.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 
 #include "geometry/base/check.h"
 #include "neural/base/device.h"
-#include "neural/base/runtime.h"
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
 #include "neural/motion/motion_batches.h"
 #include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
 #include "neural/networks/patch_discriminator.h"
-#include "neural/networks/vgg.h"
 #include "neural/training/optimizers.h"
-#include "neural/training/training_loop.h"
+#include "neural/training/renderer_trainer.h"
 
 namespace bodyloom {
 namespace {
 
 using torch::Tensor;
 
-const std::vector<std::string> kMotionColumns = {"learning_rate",
-                                                 "loss",
-                                                 "image",
-                                                 "shape",
-                                                 "normals",
-                                                 "perceptual",
-                                                 "generator",
-                                                 "discriminator",
-                                                 "validation_l1",
-                                                 "validation_psnr_db",
-                                                 "validation_label_iou",
-                                                 "validation_foreground_iou",
-                                                 "validation_normal_deg",
-                                                 "validation_flicker",
-                                                 "validation_ssim"};
 /// metrics.csv holds the scores of so many frames of each range, so that its lines compare; the summary those of all.
 constexpr int kQuickFrames = 48;
 
-struct MotionLosses {
-  double total = 0, image = 0, shape = 0, normals = 0, perceptual = 0, generator = 0, discriminator = 0;
-  [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
-};
-
-class MotionTrainer : public TrainedSystem {
+class MotionTrainer : public RendererTrainer {
  public:
   MotionTrainer(const MotionFrameSource& source, const TrainMotionOptions& options)
-      : source_(source), options_(options), config_(options.config) {
-    torch::manual_seed(options.seed);
+      : RendererTrainer(options, options.steps, ToText(options.config),
+                        {"loss", "image", "shape", "normals", "perceptual", "generator", "discriminator"}, {"image"}),
+        source_(source),
+        options_(options),
+        config_(options.config) {
     model_ = MotionModel(config_);
     MotionFrame first;
     source(options.train.front().begin, true, &first);
@@ -65,31 +46,24 @@ class MotionTrainer : public TrainedSystem {
     discriminator_->to(NeuralDevice());
     vgg_ = MakeFeatureNetwork(FeatureTrunk::kVgg16, {"conv1_2", "conv2_2", "conv3_2", "conv4_2"}, options.vgg16,
                               config_.profile.perceptual_divisor);
-    optimizer_ = MakeAdam(*model_, options.learning_rate);
-    discriminator_optimizer_ = MakeAdam(*discriminator_, options.discriminator_rate);
-    checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
-    checkpoint_->config_json = options.config_json;
     if (options.average > 0) {
       average_ = MotionModel(config_);
       average_->to(NeuralDevice());
-      checkpoint_->Add("learner", model_.ptr().get());
+      checkpoint_.Add("learner", model_.ptr().get());
     }
-    checkpoint_->Add("model", Shown().ptr().get());
-    checkpoint_->Add("discriminator", discriminator_.ptr().get());
-    checkpoint_->Add("optimizer", optimizer_.get());
-    checkpoint_->Add("discriminator_optimizer", discriminator_optimizer_.get());
+    checkpoint_.Add("model", Shown().ptr().get());
+    AddJudge(discriminator_.ptr());
+    optimizer_ = AddOptimizer("optimizer", *model_, options.learning_rate);
+    discriminator_optimizer_ = AddOptimizer("discriminator_optimizer", *discriminator_, options.discriminator_rate);
     memory_ =
         std::make_unique<RolloutMemory>(model_->Nothing(1, first.height, first.width), options.batch, options.rollouts);
-    memory_->AddTo(checkpoint_.get());
-    checkpoint_->Add("best", &best_);
+    memory_->AddTo(&checkpoint_);
+    checkpoint_.Add("best", &best_);
   }
 
   TrainMotionSummary Run() {
     TrainMotionSummary summary;
-    static_cast<TrainingOutcome&>(summary) =
-        RunTraining(options_, options_.steps, kMotionColumns, checkpoint_.get(), this);
-    summary.losses_off = losses_off_;
-    summary.perceptual_random_features = vgg_->has_random_features;
+    static_cast<RendererTraining&>(summary) = Train();
     summary.scores = all_scores_.frames > 0 ? all_scores_ : scores_;
     return summary;
   }
@@ -101,13 +75,6 @@ class MotionTrainer : public TrainedSystem {
                     {options_.batch, options_.rollouts, options_.rollout_length, /*from_truth=*/0.75, options_.seed}),
         first_step, options_.steps);
     memory_->Begin();
-  }
-
-  bool Step(int step) override {
-    losses_ = Learn(batches_->Take(), step);
-    if (!losses_.IsFinite()) return false;
-    if (average_) AverageWeights(*model_, step + 1, options_.average, average_.get());
-    return true;
   }
 
   [[nodiscard]] bool HasValidation() const override { return !options_.validation.empty(); }
@@ -152,105 +119,77 @@ class MotionTrainer : public TrainedSystem {
 
   [[nodiscard]] int ValidationsSinceBest() const override { return static_cast<int>(best_[1].item<double>()); }
 
-  [[nodiscard]] std::vector<double> Row(int done) const override {
-    return {LinearDecayOverLastHalf(options_.learning_rate, done - 1, options_.steps),
-            losses_.total,
-            losses_.image,
-            losses_.shape,
-            losses_.normals,
-            losses_.perceptual,
-            losses_.generator,
-            losses_.discriminator};
-  }
-
-  [[nodiscard]] std::vector<double> ScoreRow() const override {
-    return {scores_.image_l1,   scores_.psnr_db, scores_.label_iou, scores_.foreground_iou,
-            scores_.normal_deg, scores_.flicker, scores_.ssim};
-  }
-
-  bool Report(int done, double seconds) override {
-    return !options_.progress ||
-           options_.progress({done, options_.steps, losses_.total, losses_.image, scores_, seconds});
+  [[nodiscard]] std::vector<TrainingFigure> ScoreRow() const override {
+    return {{"validation_l1", scores_.image_l1},
+            {"validation_psnr_db", scores_.psnr_db},
+            {"validation_label_iou", scores_.label_iou},
+            {"validation_foreground_iou", scores_.foreground_iou},
+            {"validation_normal_deg", scores_.normal_deg},
+            {"validation_flicker", scores_.flicker},
+            {"validation_ssim", scores_.ssim}};
   }
 
  private:
   /// What is validated and kept for inference.
   [[nodiscard]] MotionModel& Shown() { return average_ ? average_ : model_; }
 
-  MotionLosses Learn(const MotionBatch& batch, int step) {
-    SetRate(optimizer_.get(), LinearDecayOverLastHalf(options_.learning_rate, step, options_.steps));
-    SetRate(discriminator_optimizer_.get(), LinearDecayOverLastHalf(options_.discriminator_rate, step, options_.steps));
+  [[nodiscard]] double ValidationPsnr() const override {
+    return scores_.frames > 0 ? scores_.psnr_db : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  bool Learn(int step) override {
+    const MotionBatch batch = batches_->Take();
     const MotionTruth& truth = batch.truth;
     const MotionStepResult result = model_(batch.input, memory_->Before(batch));
     const MotionState& state = result.state;
-    MotionLosses losses;
     // Where the person is, is the classes' affair: colour is judged where the person truly is. Judged as it is shown,
     // it would turn dark where the person might be and mostly is not.
     const Tensor image = has_labels_ && config_.shape ? truth.foreground * result.colour : state.image;
     const auto condition = [&](const Tensor& picture) {
       return has_labels_ ? torch::cat({truth.labels, picture}, 1) : picture;
     };
-    if (options_.gan_weight > 0) {
-      discriminator_optimizer_->zero_grad();
-      const Tensor loss =
-          DiscriminatorLoss({discriminator_(condition(truth.image))}, {discriminator_(condition(image.detach()))});
-      loss.backward();
-      losses.discriminator = loss.item<double>();
-      if (!std::isfinite(losses.discriminator)) return losses;
-      discriminator_optimizer_->step();
+    if (options_.gan_weight > 0 && !LearnToJudge(DiscriminatorLoss({discriminator_(condition(truth.image))},
+                                                                   {discriminator_(condition(image.detach()))}),
+                                                 discriminator_optimizer_)) {
+      return false;
     }
-    optimizer_->zero_grad();
-    Tensor total = L1Loss(image, truth.image);
-    losses.image = total.item<double>();
-    const auto add = [&](double weight, const Tensor& loss, double* value) {
-      *value = loss.item<double>();
-      total = total + weight * loss;
-    };
+    Tensor total;
+    Add("image", 1, L1Loss(image, truth.image), &total);
     if (config_.shape && has_labels_) {
-      add(options_.shape_weight,
+      Add("shape", options_.shape_weight,
           options_.shape_by_cross_entropy ? SoftLabelCrossEntropy(result.label_logits, truth.labels)
                                           : L1Loss(state.labels, truth.labels),
-          &losses.shape);
+          &total);
     }
-    if (config_.normals && has_normals_)
-      add(options_.normal_weight, L1Loss(state.normals, truth.normals), &losses.normals);
+    if (config_.normals && has_normals_) {
+      Add("normals", options_.normal_weight, L1Loss(state.normals, truth.normals), &total);
+    }
     if (options_.perceptual_weight > 0) {
-      std::vector<Tensor> target;
-      {
-        const torch::NoGradGuard no_grad;
-        target = vgg_(truth.image);
-      }
-      add(options_.perceptual_weight, PerceptualLoss(vgg_(image), target), &losses.perceptual);
+      const SeenPair seen = See(image, truth.image);
+      Add("perceptual", options_.perceptual_weight, PerceptualLoss(seen.picture, seen.truth), &total);
     }
     if (options_.gan_weight > 0) {
-      RequireGradients(discriminator_.get(), false);
-      add(options_.gan_weight, GeneratorLoss({discriminator_(condition(image))}), &losses.generator);
+      OnlyJudge();
+      Add("generator", options_.gan_weight, GeneratorLoss({discriminator_(condition(image))}), &total);
     }
-    total.backward();
-    RequireGradients(discriminator_.get(), true);
-    losses.total = total.item<double>();
-    if (!losses.IsFinite()) return losses;  // a step would spoil the weights
-    optimizer_->step();
+    if (!Descend(total, {optimizer_})) return false;
     memory_->Keep(batch, state);
-    return losses;
+    if (average_) AverageWeights(*model_, step + 1, options_.average, average_.get());
+    return true;
   }
 
   const MotionFrameSource& source_;
   const TrainMotionOptions& options_;
   const MotionConfig& config_;
   bool has_labels_ = false, has_normals_ = false;
-  std::vector<std::string> losses_off_;
   MotionModel model_{nullptr};
   MotionModel average_{nullptr};  ///< of model_'s weights; empty: not wanted
   PatchDiscriminator discriminator_{nullptr};
-  FeatureNetwork vgg_{nullptr};
-  std::unique_ptr<torch::optim::Adam> optimizer_, discriminator_optimizer_;
-  std::unique_ptr<Checkpoint> checkpoint_;
+  Adam *optimizer_ = nullptr, *discriminator_optimizer_ = nullptr;
   std::unique_ptr<RolloutMemory> memory_;
   MotionScores scores_, all_scores_;  ///< of the last validation's first frames of each range, and of all of them
   Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
   std::unique_ptr<MotionBatches> batches_;
-  MotionLosses losses_;  ///< of the last step
 };
 
 }  // namespace
@@ -284,8 +223,6 @@ bool TrainMotionOptions::IsValid(std::string* why) const {
 TrainMotionSummary TrainMotion(const MotionFrameSource& source, const TrainMotionOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "motion training: ", why);
-  StartNeuralRuntime(options.num_threads);
-  UseNeuralDevice(options.device);
   return MotionTrainer(source, options).Run();
 }
 

@@ -33,13 +33,6 @@ struct MotionPreview {
   std::vector<uint8_t> labels, true_labels;
 };
 
-struct TrainMotionProgress {
-  int step = 0, steps = 0;
-  double loss = 0, image = 0;  ///< of the last step
-  MotionScores scores;         ///< of the last validation
-  double seconds = 0;
-};
-
 struct TrainMotionOptions : TrainingRun {
   MotionConfig config;
   std::vector<FrameRange> train, validation;  ///< validation may be empty
@@ -59,15 +52,12 @@ struct TrainMotionOptions : TrainingRun {
   WeightsFrom alexnet, lpips_heads;  ///< of validation's LPIPS; either empty: a random-feature substitute
   PictureSimilarity ssim;            ///< of validation
   int preview_frames = 4;
-  std::function<bool(const TrainMotionProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<MotionPreview>&)> preview;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-struct TrainMotionSummary : TrainingOutcome {
+struct TrainMotionSummary : RendererTraining {
   MotionScores scores;
-  std::vector<std::string> losses_off;  ///< "shape: the frames have no labels", …
-  bool perceptual_random_features = true;
 };
 
 /// Throws std::invalid_argument for options that are not valid, std::runtime_error for files that cannot be used.

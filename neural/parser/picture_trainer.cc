@@ -40,36 +40,30 @@ void PictureTrainer::Begin(int first_step) {
 }
 
 bool PictureTrainer::Step(int step) {
-  const Losses losses = LossesOf(batches_->Take());
+  const torch::Tensor loss = LossOf(batches_->Take());
   const bool reports = (step + 1) % training_.report_every == 0 || step + 1 == training_.steps;
   // Reading a loss waits for the card: only where somebody reads it.
   if (reports) {
-    loss_ = losses.total.item<double>();
-    parts_.clear();
-    for (const torch::Tensor& part : losses.parts) parts_.push_back(part.item<double>());
+    loss_ = loss.item<double>();
     if (!std::isfinite(loss_)) return false;
   }
   SetRate(optimizer_.get(), LearningRate(step));
   optimizer_->zero_grad();
-  losses.total.backward();
+  loss.backward();
   torch::nn::utils::clip_grad_norm_(module_->parameters(), kClipNorm);
   optimizer_->step();
   AverageWeights(*module_, step + 1, training_.average_share, average_.get());
   return true;
 }
 
-TrainingOutcome PictureTrainer::Train(const std::vector<std::string>& columns) {
-  return RunTraining(training_, training_.steps, columns, &checkpoint_, this);
-}
+TrainingOutcome PictureTrainer::Train() { return RunTraining(training_, training_.steps, &checkpoint_, this); }
 
 double PictureTrainer::LearningRate(int step) const {
   return CosineWithWarmup(training_.learning_rate, step, training_.steps, training_.warmup_steps);
 }
 
-std::vector<double> PictureTrainer::Row(int done) const {
-  std::vector<double> row = {LearningRate(done - 1), loss_};
-  row.insert(row.end(), parts_.begin(), parts_.end());
-  return row;
+std::vector<TrainingFigure> PictureTrainer::Row(int done) const {
+  return {{"learning_rate", LearningRate(done - 1)}, {"loss", loss_}};
 }
 
 }  // namespace bodyloom

@@ -30,18 +30,13 @@ class PictureTrainer : public TrainedSystem {
                  CropRequest request, std::shared_ptr<torch::nn::Module> module,
                  std::shared_ptr<torch::nn::Module> average);
 
-  struct Losses {
-    torch::Tensor total;
-    std::vector<torch::Tensor> parts;  ///< for the log
-  };
-  virtual Losses LossesOf(const CropBatch& batch) = 0;
+  virtual torch::Tensor LossOf(const CropBatch& batch) = 0;
 
-  TrainingOutcome Train(const std::vector<std::string>& columns);
+  TrainingOutcome Train();
   [[nodiscard]] double LearningRate(int step) const;
-  /// A line's numbers before a validation's: learning rate, loss, parts.
-  [[nodiscard]] std::vector<double> Row(int done) const override;
+  /// A line's numbers before a validation's: learning rate, loss.
+  [[nodiscard]] std::vector<TrainingFigure> Row(int done) const override;
   [[nodiscard]] double loss() const { return loss_; }
-  [[nodiscard]] const std::vector<double>& parts() const { return parts_; }
 
  private:
   const PictureTraining& training_;
@@ -50,8 +45,7 @@ class PictureTrainer : public TrainedSystem {
   std::shared_ptr<torch::nn::Module> module_, average_;
   std::unique_ptr<torch::optim::AdamW> optimizer_;
   Checkpoint checkpoint_;
-  double loss_ = 0;  ///< of the last step that was reported, as its parts
-  std::vector<double> parts_;
+  double loss_ = 0;                                 ///< of the last step that was reported
   std::unique_ptr<Prefetcher<CropBatch>> batches_;  ///< last: its thread uses the rest
 };
 

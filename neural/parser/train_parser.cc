@@ -20,7 +20,6 @@ using torch::Tensor;
 constexpr int kParserIn = kParserPlanes.in;
 constexpr const char* kParserTraining = "parser training";
 constexpr int kMeeting = 3;  ///< pixels between two that show different classes
-const std::vector<std::string> kParserColumns = {"learning_rate", "loss", "mean_iou", "body_mean_iou"};
 
 /// Another class is near, to the right or below.
 bool ClassesMeet(const PackedPicture& picture, size_t pixel) {
@@ -51,14 +50,13 @@ class ParserTrainer : public PictureTrainer {
       : PictureTrainer("clothes parser", options, train, {kParserIn, ParserTruth::kCount, 0, 0, 1, 1, ClassesMeet},
                        module.ptr(), average.ptr()),
         validation_(validation),
-        options_(options),
         unpacked_(kParserIn),
         module_(std::move(module)),
         average_(std::move(average)) {}
 
   TrainParserResult Run() {
     TrainParserResult result;
-    const TrainingOutcome outcome = Train(kParserColumns);
+    const TrainingOutcome outcome = Train();
     result.summary = summary_;
     static_cast<TrainingOutcome&>(result.summary) = outcome;
     result.weights.network = ExportPictureUnet(average_);
@@ -88,25 +86,24 @@ class ParserTrainer : public PictureTrainer {
     }
   }
 
-  [[nodiscard]] std::vector<double> ScoreRow() const override { return {summary_.mean_iou, summary_.body_mean_iou}; }
-
-  bool Report(int done, double seconds) override {
-    return !options_.progress ||
-           options_.progress({done, options_.steps, loss(), summary_.mean_iou, summary_.body_mean_iou, seconds});
+  [[nodiscard]] std::vector<TrainingFigure> ScoreRow() const override {
+    return {{"mean_iou", summary_.mean_iou}, {"body_mean_iou", summary_.body_mean_iou}};
+  }
+  [[nodiscard]] std::vector<TrainingFigure> Figures() const override {
+    return {{"loss", loss()}, {"IoU", summary_.mean_iou}};
   }
 
  private:
-  Losses LossesOf(const CropBatch& batch) override {
+  Tensor LossOf(const CropBatch& batch) override {
     auto [planes, truth] = unpacked_(batch.bytes);
     planes = torch::cat({Lit(planes.narrow(1, 0, 3), OnDevice(batch.lights)), planes.narrow(1, 3, kParserIn - 3)}, 1);
     const Tensor classes = ClassesOf(truth.select(1, ParserTruth::kLabel), planes);
     const Tensor counted = (classes >= 0).to(torch::kFloat);
     const Tensor logs = torch::log_softmax(module_(planes), 1).gather(1, classes.clamp_min(0).unsqueeze(1)).squeeze(1);
-    return {-(logs * counted).sum() / counted.sum().clamp_min(1), {}};
+    return -(logs * counted).sum() / counted.sum().clamp_min(1);
   }
 
   const std::vector<PackedPicture>& validation_;
-  const TrainParserOptions& options_;
   const PlaneUnpacker unpacked_;
   PictureUnetModule module_, average_;
   TrainParserSummary summary_;

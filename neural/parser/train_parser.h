@@ -9,7 +9,6 @@
 /// as one that was never interrupted (same binary, machine and threads).
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,16 +24,7 @@ struct ParserTruth {
   static constexpr int kLabel = 0, kBodyLabel = 1, kCount = 2;
 };
 
-struct TrainParserProgress {
-  int step = 0, steps = 0;
-  double loss = 0;                         ///< of the last step
-  double mean_iou = 0, body_mean_iou = 0;  ///< of the last validation, 0 before the first
-  double seconds = 0;
-};
-
-struct TrainParserOptions : PictureTraining {
-  std::function<bool(const TrainParserProgress&)> progress;  ///< return false to stop after a checkpoint
-};
+using TrainParserOptions = PictureTraining;
 
 struct TrainParserSummary : TrainingOutcome {
   /// Intersection over union, mean over the classes that occur, of the mask's pixels that truly show the person, all

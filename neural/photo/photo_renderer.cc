@@ -5,7 +5,6 @@
 
 #include "geometry/base/check.h"
 #include "neural/base/device.h"
-#include "neural/base/runtime.h"
 #include "neural/photo/render_photo.h"
 #include "neural/training/checkpoint.h"
 
@@ -14,16 +13,7 @@ namespace bodyloom {
 class PhotoRenderer::Impl {
  public:
   Impl(const std::string& path, const PhotoConfig& config, const PhotoRendererOptions& options)
-      : reach_(options.reach) {
-    StartNeuralRuntime(options.num_threads);
-    UseNeuralDevice(options.device);
-    model_ = PhotoModel(config);
-    model_->to(NeuralDevice());
-    Checkpoint checkpoint(ToText(config));
-    checkpoint.Add("model", model_.ptr().get());
-    checkpoint.Load(path, CheckpointPart::kModules);
-    model_->eval();
-  }
+      : reach_(options.reach), model_(LoadModel<PhotoModel>(path, config, options.num_threads, options.device)) {}
 
   void Encode(const PartialTexture& texture) {
     const int U = model_->config.profile.texture_size;
@@ -32,7 +22,7 @@ class PhotoRenderer::Impl {
     features_ = model_->Complete(ToTensors(std::span(&texture, 1)));
   }
 
-  [[nodiscard]] PhotoPicture Render(const PhotoFrame& pose) const {
+  [[nodiscard]] PersonPicture Render(const PhotoFrame& pose) const {
     CheckEncoded();
     const int S = model_->config.profile.image_size;
     BODYLOOM_CHECK(pose.size == S, "photo renderer: a frame of ", pose.size, " pixels a side, expected ", S);
@@ -48,7 +38,7 @@ class PhotoRenderer::Impl {
   void CheckEncoded() const { BODYLOOM_CHECK(features_.defined(), "photo renderer: no texture encoded yet"); }
 
   int reach_;
-  PhotoModel model_{nullptr};
+  PhotoModel model_;
   torch::Tensor features_;
 };
 
@@ -58,7 +48,7 @@ PhotoRenderer::PhotoRenderer(const std::string& checkpoint_path, const PhotoConf
 PhotoRenderer::~PhotoRenderer() = default;
 
 void PhotoRenderer::Encode(const PartialTexture& texture) { impl_->Encode(texture); }
-PhotoPicture PhotoRenderer::Render(const PhotoFrame& pose) const { return impl_->Render(pose); }
+PersonPicture PhotoRenderer::Render(const PhotoFrame& pose) const { return impl_->Render(pose); }
 std::vector<float> PhotoRenderer::CompletedTexture() const { return impl_->CompletedTexture(); }
 
 }  // namespace bodyloom

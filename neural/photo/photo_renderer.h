@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "neural/base/person_picture.h"
 #include "neural/photo/photo_config.h"
-#include "neural/photo/photo_picture.h"
 #include "render/texture/complete/partial_texture.h"
 #include "render/texture/photo_frame.h"
 
@@ -34,7 +34,7 @@ class PhotoRenderer {
 
   /// The person in the pose of a frame (its picture, labels and texels are not looked at). Throws std::invalid_argument
   /// before Encode and when the frame's size is not the configuration's.
-  [[nodiscard]] PhotoPicture Render(const PhotoFrame& pose) const;
+  [[nodiscard]] PersonPicture Render(const PhotoFrame& pose) const;
 
   /// The completed texture as colours: the first three features, planar 3 × U × U in [0, 1], everywhere in the atlas.
   /// Variants without FeatureNet give the partial texture's, unseen texels grey. Throws std::invalid_argument before

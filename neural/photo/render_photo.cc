@@ -9,11 +9,11 @@
 
 namespace bodyloom {
 
-PhotoPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach) {
+PersonPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach) {
   const torch::NoGradGuard no_grad;
   const int S = pose.size;
   const size_t pixels = static_cast<size_t>(S) * S;
-  PhotoPicture picture;
+  PersonPicture picture;
   picture.size = S;
   picture.image.assign(3 * pixels, 0);
   picture.alpha.assign(pixels, 0);

@@ -2,14 +2,14 @@
 /// Renders one pose from the features of a source. Internal: includes LibTorch.
 #pragma once
 
+#include "neural/base/person_picture.h"
 #include "neural/photo/photo_model.h"
-#include "neural/photo/photo_picture.h"
 
 namespace bodyloom {
 
 /// `features`: 1×C×U×U as PhotoModelImpl::Complete gives them. Only the window within `reach` of the body is computed,
 /// the rest is background; a negative reach computes the whole frame. A frame without a body is background. No
 /// gradients.
-PhotoPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach);
+PersonPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach);
 
 }  // namespace bodyloom

@@ -11,16 +11,14 @@
 #include "geometry/base/check.h"
 #include "geometry/base/prefetcher.h"
 #include "neural/base/device.h"
-#include "neural/base/runtime.h"
 #include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
-#include "neural/networks/vgg.h"
 #include "neural/photo/photo_batch.h"
 #include "neural/photo/photo_losses.h"
 #include "neural/photo/photo_model.h"
 #include "neural/photo/render_photo.h"
 #include "neural/training/optimizers.h"
-#include "neural/training/training_loop.h"
+#include "neural/training/renderer_trainer.h"
 #include "render/texture/complete/body_part_map.h"
 #include "render/texture/complete/partial_texture.h"
 
@@ -28,40 +26,24 @@ namespace bodyloom {
 namespace {
 
 using torch::Tensor;
-using torch::optim::Adam;
 
-const std::vector<std::string> kPhotoColumns = {"learning_rate",
-                                                "loss",
-                                                "perceptual",
-                                                "face",
-                                                "texture",
-                                                "generator",
-                                                "alpha",
-                                                "discriminator",
-                                                "validation_l1",
-                                                "validation_psnr_db",
-                                                "validation_ssim",
-                                                "validation_lpips",
-                                                "validation_outline_iou"};
-
-struct PhotoLosses {
-  double total = 0, perceptual = 0, face = 0, texture = 0, generator = 0, alpha = 0, discriminator = 0;
-  [[nodiscard]] bool IsFinite() const { return std::isfinite(total + discriminator); }
-};
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 const PhotoSource& ValidationSource(const PhotoSource& source, const TrainPhotoOptions& options) {
   return options.validation_source != nullptr ? *options.validation_source : source;
 }
 
-class PhotoTrainer : public TrainedSystem {
+class PhotoTrainer : public RendererTrainer {
  public:
   PhotoTrainer(const PhotoSource& source, const TrainPhotoOptions& options)
-      : source_(source),
+      : RendererTrainer(options, options.TotalSteps(), ToText(options.config),
+                        {"loss", "perceptual", "face", "texture", "generator", "alpha", "discriminator"}, {}),
+        source_(source),
         validation_source_(ValidationSource(source, options)),
         options_(options),
         config_(options.config),
-        lpips_(LpipsFrom(options.alexnet, options.lpips_heads)) {
-    torch::manual_seed(options.seed);
+        scoring_{std::make_shared<const Lpips>(LpipsFrom(options.alexnet, options.lpips_heads)), nullptr,
+                 options.ssim} {
     if (config_.GuessesUnseen()) guess_.emplace(source.texture_size, source.texel_parts, source.texel_places);
     model_ = PhotoModel(config_);
     discriminator_ = PhotoDiscriminator(config_);
@@ -78,26 +60,17 @@ class PhotoTrainer : public TrainedSystem {
       back_of_head_ = HeadTexelsOf(source.texel_parts, source.texel_places).back;
     }
     if (config_.variant == PhotoVariant::kNoInt) losses_off_.emplace_back("texture: left out by no-int");
-    checkpoint_ = std::make_unique<Checkpoint>(ToText(config_));
-    checkpoint_->config_json = options.config_json;
-    checkpoint_->Add("model", model_.ptr().get());
-    checkpoint_->Add("discriminator", discriminator_.ptr().get());
-    const auto optimizer = [&](const char* name, const torch::nn::Module& module) {
-      std::unique_ptr<Adam> adam = MakeAdam(module, options.learning_rate);
-      checkpoint_->Add(name, adam.get());
-      return adam;
-    };
-    if (config_.Completes()) feature_optimizer_ = optimizer("feature_optimizer", *model_->feature_net);
-    render_optimizer_ = optimizer("render_optimizer", *model_->render_net);
-    discriminator_optimizer_ = optimizer("discriminator_optimizer", *discriminator_);
+    checkpoint_.Add("model", model_.ptr().get());
+    AddJudge(discriminator_.ptr());
+    const double rate = options.learning_rate;
+    if (config_.Completes()) feature_optimizer_ = AddOptimizer("feature_optimizer", *model_->feature_net, rate);
+    render_optimizer_ = AddOptimizer("render_optimizer", *model_->render_net, rate);
+    discriminator_optimizer_ = AddOptimizer("discriminator_optimizer", *discriminator_, rate);
   }
 
   TrainPhotoSummary Run() {
     TrainPhotoSummary summary;
-    static_cast<TrainingOutcome&>(summary) =
-        RunTraining(options_, options_.TotalSteps(), kPhotoColumns, checkpoint_.get(), this);
-    summary.losses_off = losses_off_;
-    summary.perceptual_random_features = vgg_->has_random_features;
+    static_cast<RendererTraining&>(summary) = Train();
     summary.scores = scores_;
     return summary;
   }
@@ -108,25 +81,13 @@ class PhotoTrainer : public TrainedSystem {
                                                  [this, first_step](int64_t i) { return BatchOf(first_step + i); });
   }
 
-  bool Step(int step) override {
-    const double rate = Rate(step);
-    for (Adam* optimizer : {feature_optimizer_.get(), render_optimizer_.get(), discriminator_optimizer_.get()}) {
-      if (optimizer == nullptr) continue;
-      SetRate(optimizer, rate);
-      optimizer->zero_grad();
-    }
-    const PhotoBatch batch = batches_->Take();
-    losses_ = step < InpaintSteps() ? InpaintStep(batch) : RenderStep(batch, IsJudged(step));
-    return losses_.IsFinite();
-  }
-
   [[nodiscard]] bool HasValidation() const override { return !options_.validation.empty(); }
 
   void Validate(int done, bool) override {
     const std::vector<PhotoPair> pairs =
         ValidationPairs(validation_source_, options_.validation, options_.validation_pairs);
     const size_t every = std::max<size_t>(1, pairs.size() / static_cast<size_t>(options_.preview_pairs));
-    PhotoScorer scorer(lpips_, options_.ssim);
+    PersonScorer scorer(scoring_);
     std::vector<PhotoPreview> previews;
     for (size_t i = 0; i < pairs.size(); ++i) {
       const torch::NoGradGuard no_grad;
@@ -149,21 +110,12 @@ class PhotoTrainer : public TrainedSystem {
     if (options_.preview) options_.preview(done, previews);
   }
 
-  [[nodiscard]] std::vector<double> Row(int done) const override {
-    const PhotoLosses& l = losses_;
-    const auto judged = [&](double loss) {
-      return IsJudged(done - 1) ? loss : std::numeric_limits<double>::quiet_NaN();
-    };
-    return {Rate(done - 1),      l.total, l.perceptual,           l.face, l.texture,
-            judged(l.generator), l.alpha, judged(l.discriminator)};
-  }
-
-  [[nodiscard]] std::vector<double> ScoreRow() const override {
-    return {scores_.image_l1, scores_.psnr_db, scores_.ssim, scores_.lpips, scores_.silhouette_iou};
-  }
-
-  bool Report(int done, double seconds) override {
-    return !options_.progress || options_.progress({done, options_.TotalSteps(), losses_.total, scores_, seconds});
+  [[nodiscard]] std::vector<TrainingFigure> ScoreRow() const override {
+    return {{"validation_l1", scores_.image_l1},
+            {"validation_psnr_db", scores_.psnr_db},
+            {"validation_ssim", scores_.ssim},
+            {"validation_lpips", scores_.lpips},
+            {"validation_outline_iou", scores_.silhouette_iou}};
   }
 
  private:
@@ -180,19 +132,25 @@ class PhotoTrainer : public TrainedSystem {
   /// Steps before RenderNet's turn.
   [[nodiscard]] int InpaintSteps() const { return options_.TotalSteps() - options_.steps; }
   [[nodiscard]] bool IsJudged(int step) const { return step >= options_.FirstJudgedStep(); }
-  [[nodiscard]] double Rate(int step) const {
+  [[nodiscard]] double RateShare(int step) const override {
     const int before = InpaintSteps();
-    return step < before ? LinearDecayOverLastHalf(options_.learning_rate, step, before)
-                         : LinearDecayOverLastHalf(options_.learning_rate, step - before, options_.steps);
+    return step < before ? LinearDecayOverLastHalf(1, step, before)
+                         : LinearDecayOverLastHalf(1, step - before, options_.steps);
+  }
+  [[nodiscard]] double ValidationPsnr() const override { return scores_.frames > 0 ? scores_.psnr_db : kNone; }
+
+  bool Learn(int step) override {
+    const PhotoBatch batch = batches_->Take();
+    const bool judged = IsJudged(step);
+    if (!(step < InpaintSteps() ? InpaintStep(batch) : RenderStep(batch, judged))) return false;
+    if (!judged) Note("generator", kNone), Note("discriminator", kNone);
+    return true;
   }
 
-  PhotoLosses InpaintStep(const PhotoBatch& batch) {
-    PhotoLosses losses;
-    const Tensor loss = TextureLoss(model_->Complete(batch.source), batch.source, batch.target);
-    loss.backward();
-    losses.total = losses.texture = loss.item<double>();
-    if (losses.IsFinite()) feature_optimizer_->step();
-    return losses;
+  bool InpaintStep(const PhotoBatch& batch) {
+    Tensor total;
+    Add("texture", 1, TextureLoss(model_->Complete(batch.source), batch.source, batch.target), &total);
+    return Descend(total, {feature_optimizer_});
   }
 
   /// F_s; fixed in kInpaint's second stage.
@@ -202,52 +160,35 @@ class PhotoTrainer : public TrainedSystem {
     return model_->Complete(batch.source);
   }
 
-  PhotoLosses RenderStep(const PhotoBatch& batch, bool judged) {
-    PhotoLosses losses;
+  bool RenderStep(const PhotoBatch& batch, bool judged) {
     const Tensor features = Features(batch);
     const Tensor projected = model_->Project(features, batch.pose);
     const PhotoResult result = model_->Render(projected, batch.pose.body);
     const Tensor condition = projected.detach();
     const auto judge = [&](const Tensor& image) { return discriminator_(torch::cat({condition, image}, 1)); };
-    if (judged) {
-      const Tensor loss = DiscriminatorLoss(judge(batch.truth.image), judge(result.image.detach()));
-      loss.backward();
-      losses.discriminator = loss.item<double>();
-      if (!std::isfinite(losses.discriminator)) return losses;
-      discriminator_optimizer_->step();
+    if (judged && !LearnToJudge(DiscriminatorLoss(judge(batch.truth.image), judge(result.image.detach())),
+                                discriminator_optimizer_)) {
+      return false;
     }
-    const Tensor alpha = torch::binary_cross_entropy_with_logits(result.alpha_logit, batch.truth.foreground);
-    losses.alpha = alpha.item<double>();
-    Tensor total = options_.alpha_weight * alpha;
-    const auto add = [&](double weight, const Tensor& loss, double* value) {
-      *value = loss.item<double>();
-      total = total + weight * loss;
-    };
+    Tensor total;
+    Add("alpha", options_.alpha_weight,
+        torch::binary_cross_entropy_with_logits(result.alpha_logit, batch.truth.foreground), &total);
     if (options_.perceptual_weight > 0) {
-      std::vector<Tensor> target;
-      {
-        const torch::NoGradGuard no_grad;
-        target = vgg_(batch.truth.image);
-      }
-      add(options_.perceptual_weight, PerceptualLoss(vgg_(result.image), target), &losses.perceptual);
+      const SeenPair seen = See(result.image, batch.truth.image);
+      Add("perceptual", options_.perceptual_weight, PerceptualLoss(seen.picture, seen.truth), &total);
     }
     if (!sphereface_.is_empty() && options_.face_weight > 0) {
-      add(options_.face_weight, FaceLoss(sphereface_, result.image, batch.truth.image, batch.faces), &losses.face);
+      Add("face", options_.face_weight, FaceLoss(sphereface_, result.image, batch.truth.image, batch.faces), &total);
     }
     if (config_.variant == PhotoVariant::kFull && options_.texture_weight > 0) {
-      add(options_.texture_weight, TextureLoss(features, batch.source, batch.target), &losses.texture);
+      Add("texture", options_.texture_weight, TextureLoss(features, batch.source, batch.target), &total);
     }
     if (judged) {
-      RequireGradients(discriminator_.get(), false);
-      add(options_.gan_weight, GeneratorLoss(judge(result.image)), &losses.generator);
+      OnlyJudge();
+      Add("generator", options_.gan_weight, GeneratorLoss(judge(result.image)), &total);
     }
-    total.backward();
-    RequireGradients(discriminator_.get(), true);
-    losses.total = total.item<double>();
-    if (!losses.IsFinite()) return losses;  // a step would spoil the weights
-    render_optimizer_->step();
-    if (config_.Completes() && config_.variant != PhotoVariant::kInpaint) feature_optimizer_->step();
-    return losses;
+    if (!config_.Completes() || config_.variant == PhotoVariant::kInpaint) return Descend(total, {render_optimizer_});
+    return Descend(total, {render_optimizer_, feature_optimizer_});
   }
 
   const PhotoSource& source_;
@@ -256,16 +197,12 @@ class PhotoTrainer : public TrainedSystem {
   std::vector<uint8_t> back_of_head_;     ///< where faces are judged
   const TrainPhotoOptions& options_;
   const PhotoConfig& config_;
-  Lpips lpips_;
-  std::vector<std::string> losses_off_;
+  PersonScoring scoring_;
   PhotoModel model_{nullptr};
   MultiScaleDiscriminator discriminator_{nullptr};
-  FeatureNetwork vgg_{nullptr};
   SphereFace sphereface_{nullptr};  ///< empty without weights
-  std::unique_ptr<Adam> feature_optimizer_, render_optimizer_, discriminator_optimizer_;
-  std::unique_ptr<Checkpoint> checkpoint_;
-  PhotoScores scores_;
-  PhotoLosses losses_;                               ///< of the last step
+  Adam *feature_optimizer_ = nullptr, *render_optimizer_ = nullptr, *discriminator_optimizer_ = nullptr;
+  PersonScores scores_;
   std::unique_ptr<Prefetcher<PhotoBatch>> batches_;  ///< last: its thread uses the rest
 };
 
@@ -311,8 +248,6 @@ TrainPhotoSummary TrainPhoto(const PhotoSource& source, const TrainPhotoOptions&
   };
   check(source, options.train);
   check(ValidationSource(source, options), options.validation);
-  StartNeuralRuntime(options.num_threads);
-  UseNeuralDevice(options.device);
   return PhotoTrainer(source, options).Run();
 }
 

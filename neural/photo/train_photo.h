@@ -21,11 +21,10 @@
 #include <string>
 #include <vector>
 
+#include "neural/metrics/person_scores.h"
 #include "neural/networks/named_weights.h"
 #include "neural/photo/photo_config.h"
 #include "neural/photo/photo_pairs.h"
-#include "neural/photo/photo_picture.h"
-#include "neural/photo/photo_scores.h"
 #include "neural/training/training_run.h"
 #include "render/texture/photo_frame.h"
 
@@ -35,15 +34,8 @@ namespace bodyloom {
 struct PhotoPreview {
   PhotoPair pair;
   PhotoFrame source, target;
-  PhotoPicture picture;
+  PersonPicture picture;
   std::vector<float> partial_texture, completed_texture;  ///< planar 3 × U × U in [0, 1]
-};
-
-struct TrainPhotoProgress {
-  int step = 0, steps = 0;
-  double loss = 0;
-  PhotoScores scores;  ///< of the last validation
-  double seconds = 0;
 };
 
 struct TrainPhotoOptions : TrainingRun {
@@ -64,7 +56,6 @@ struct TrainPhotoOptions : TrainingRun {
   WeightsFrom alexnet, lpips_heads;  ///< empty: validation's LPIPS is a random-feature substitute
   PictureSimilarity ssim;            ///< of validation; may be empty
   int preview_pairs = 4;
-  std::function<bool(const TrainPhotoProgress&)> progress;  ///< return false to stop after a checkpoint
   std::function<void(int step, const std::vector<PhotoPreview>&)> preview;
 
   /// Of both stages.
@@ -74,10 +65,8 @@ struct TrainPhotoOptions : TrainingRun {
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-struct TrainPhotoSummary : TrainingOutcome {
-  PhotoScores scores;
-  std::vector<std::string> losses_off;
-  bool perceptual_random_features = true;
+struct TrainPhotoSummary : RendererTraining {
+  PersonScores scores;
 };
 
 /// Throws std::invalid_argument for options that are not valid or do not fit the source, std::runtime_error for files

@@ -17,6 +17,9 @@
 #include <utility>
 #include <vector>
 
+#include "neural/base/device.h"
+#include "neural/base/runtime.h"
+
 namespace bodyloom {
 
 struct CheckpointInfo {
@@ -61,5 +64,20 @@ class Checkpoint {
   std::vector<std::pair<std::string, torch::Tensor*>> tensors_;
   void CheckName(const std::string& name) const;
 };
+
+/// The networks of a run, "model" of its checkpoint, ready for use on `device`. The checkpoint is of that configuration
+/// (ToText); throws as Checkpoint::Load otherwise.
+template <class Model, class Config>
+Model LoadModel(const std::string& path, const Config& config, int num_threads, const std::string& device) {
+  StartNeuralRuntime(num_threads);
+  UseNeuralDevice(device);
+  Model model(config);
+  model->to(NeuralDevice());
+  Checkpoint checkpoint(ToText(config));
+  checkpoint.Add("model", model.ptr().get());
+  checkpoint.Load(path, CheckpointPart::kModules);
+  model->eval();
+  return model;
+}
 
 }  // namespace bodyloom

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "geometry/base/check.h"
 #include "geometry/base/stopwatch.h"
@@ -25,11 +27,19 @@ bool IsValidRun(const TrainingRun& run, std::string* why) {
          in_range("checkpoint_every", run.checkpoint_every, 1, 1e8) && in_range("patience", run.patience, 0, 1e6);
 }
 
-TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, const std::vector<std::string>& columns,
-                            Checkpoint* checkpoint, TrainedSystem* system) {
-  std::vector<std::string> all_columns = columns;
-  all_columns.emplace_back("seconds");
-  MetricsLog log((fs::path(run.run_dir) / "metrics.csv").string(), all_columns);
+double TrainingProgress::At(const std::string& name) const {
+  for (const TrainingFigure& figure : figures) {
+    if (name == figure.name) return figure.value;
+  }
+  throw std::invalid_argument("training: no figure \"" + name + "\"");
+}
+
+TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, Checkpoint* checkpoint, TrainedSystem* system) {
+  std::vector<std::string> columns;
+  for (const TrainingFigure& figure : system->Row(1)) columns.emplace_back(figure.name);
+  for (const TrainingFigure& figure : system->ScoreRow()) columns.emplace_back(figure.name);
+  columns.emplace_back("seconds");
+  MetricsLog log((fs::path(run.run_dir) / "metrics.csv").string(), columns);
   const std::string path = CheckpointPath(run.run_dir);
   int done = 0, last_saved = 0;
   if (run.resume) {
@@ -57,13 +67,14 @@ TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, const std::
     const bool validates = system->HasValidation() && (last || done % run.validate_every == 0);
     if (validates) system->Validate(done, last);
     if (last || validates || done % run.report_every == 0) {
-      std::vector<double> row = system->Row(done);
-      for (const double score : system->ScoreRow()) {
-        row.push_back(validates ? score : std::numeric_limits<double>::quiet_NaN());
+      std::vector<double> row;
+      for (const TrainingFigure& figure : system->Row(done)) row.push_back(figure.value);
+      for (const TrainingFigure& score : system->ScoreRow()) {
+        row.push_back(validates ? score.value : std::numeric_limits<double>::quiet_NaN());
       }
       row.push_back(watch.seconds());
       log.Add(done, row);
-      if (!system->Report(done, watch.seconds())) {
+      if (run.progress && !run.progress({done, total_steps, system->Figures(), watch.seconds()})) {
         outcome.status = TrainingStatus::kStopped;
         outcome.message = Concatenate("stopped at step ", done);
       } else if (run.patience > 0 && system->ValidationsSinceBest() >= run.patience) {

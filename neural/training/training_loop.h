@@ -2,7 +2,6 @@
 /// The loop around the steps of a training run: log, validation, checkpoints, early stop. Internal: includes LibTorch.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "neural/training/checkpoint.h"
@@ -24,18 +23,17 @@ class TrainedSystem {
   /// How many validations came since the best one.
   [[nodiscard]] virtual int ValidationsSinceBest() const { return 0; }
   /// A line of metrics.csv between the step and the seconds: first these, then the scores of a validation, whose cells
-  /// stay empty where there was none. NaN: an empty cell.
-  [[nodiscard]] virtual std::vector<double> Row(int done) const = 0;
-  [[nodiscard]] virtual std::vector<double> ScoreRow() const = 0;
-  /// Tells the caller; false to stop.
-  virtual bool Report(int done, double seconds) = 0;
+  /// stay empty where there was none. NaN: an empty cell. The names are the columns, the same from the beginning on.
+  [[nodiscard]] virtual std::vector<TrainingFigure> Row(int done) const = 0;
+  [[nodiscard]] virtual std::vector<TrainingFigure> ScoreRow() const = 0;
+  /// What the caller is told (TrainingProgress::figures).
+  [[nodiscard]] virtual std::vector<TrainingFigure> Figures() const = 0;
 };
 
-/// Runs `total_steps` steps (run.steps are those of one stage). metrics.csv has the columns step, `columns`, seconds. A
+/// Runs `total_steps` steps (run.steps are those of one stage). metrics.csv has the columns step, the rows', seconds. A
 /// run that goes on from a checkpoint ends with the same bytes as one that was never interrupted, provided the system's
 /// steps depend on nothing but their number and what the checkpoint holds. Throws std::runtime_error for files that
 /// cannot be used.
-TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, const std::vector<std::string>& columns,
-                            Checkpoint* checkpoint, TrainedSystem* system);
+TrainingOutcome RunTraining(const TrainingRun& run, int total_steps, Checkpoint* checkpoint, TrainedSystem* system);
 
 }  // namespace bodyloom

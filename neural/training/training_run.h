@@ -1,11 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options that every training run has, and how it ended.
+/// Options that every training run has, how far it is, and how it ended.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <vector>
 
 namespace bodyloom {
+
+/// A figure of a run by its name, such as "image", 0.034, or "validation", 21.3, " dB".
+struct TrainingFigure {
+  const char* name = "";
+  double value = 0;
+  const char* unit = "";
+};
+
+struct TrainingProgress {
+  int step = 0, steps = 0;              ///< that the weights have seen, and in all
+  std::vector<TrainingFigure> figures;  ///< losses of the last step, then of the last validation, once there was one
+  double seconds = 0;
+
+  /// The figure of that name; throws std::invalid_argument when there is none.
+  [[nodiscard]] double At(const std::string& name) const;
+};
 
 struct TrainingRun {
   int steps = 20000;
@@ -17,6 +35,7 @@ struct TrainingRun {
   std::string run_dir;      ///< exists; checkpoint.bin and metrics.csv are written here
   std::string config_json;  ///< kept in the checkpoint as it is
   bool resume = false;      ///< go on from run_dir/checkpoint.bin
+  std::function<bool(const TrainingProgress&)> progress;  ///< return false to stop after a checkpoint
 };
 
 /// Of what all runs have in common. `why` may be nullptr.
@@ -34,6 +53,13 @@ struct TrainingOutcome {
   std::string message;  ///< unless finished: what ended it, and where
   int steps = 0;        ///< that the weights have seen
   double seconds = 0;   ///< of this process
+};
+
+/// Of a renderer's training.
+struct RendererTraining : TrainingOutcome {
+  std::vector<std::string> losses_off;     ///< "shape: the frames have no labels", …
+  bool perceptual_random_features = true;  ///< no weights were given for the perceptual loss
+  std::string checkpoint;                  ///< the file written, and others beside it
 };
 
 /// run_dir/checkpoint.bin.

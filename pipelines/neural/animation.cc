@@ -3,14 +3,61 @@
 
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "data_tools/video/image_file.h"
+#include "data_tools/video/video_writer.h"
 #include "geometry/base/percentile.h"
 #include "pipelines/files.h"
+#include "pipelines/report_json.h"
 #include "render/view/contact_sheet.h"
 
 namespace bodyloom {
+
+AnimationSummary WriteAnimation(const AnimationRequest& request, const Track& track, PictureSize picture, double fps,
+                                const PipelineCallbacks& callbacks, FramePainter* painter, std::vector<Image>* sheet,
+                                int* columns) {
+  AnimationSummary summary;
+  summary.frames = track.num_frames();
+  summary.picture = picture;
+  VideoWriter video(request.out, picture.width, picture.height, fps);
+  std::vector<int> on_sheet;
+  if (!request.sheet.empty()) on_sheet = EvenlySpreadFrames(summary.frames, kSheetFrames);
+  std::vector<double> network_ms;
+  for (int t = 0; t < summary.frames; ++t) {
+    Image composed = painter->NextBackground();
+    const bool painted = track.HasResult(t);
+    if (painted) {
+      const double network_s = painter->Paint(t, &composed);
+      if (t > 0) network_ms.push_back(1e3 * network_s);  // the first frame warms up
+    } else {
+      ++summary.frames_without_fit;
+    }
+    if (std::binary_search(on_sheet.begin(), on_sheet.end(), t)) {
+      std::vector<Image> pictures = painter->ForSheet(t, painted, composed);
+      if (!pictures.empty()) *columns = static_cast<int>(pictures.size());
+      std::move(pictures.begin(), pictures.end(), std::back_inserter(*sheet));
+    }
+    video.Write(composed);
+    painter->Written(t, painted, composed);
+    const int before = painter->FramesBefore();
+    callbacks.Update("rendering", static_cast<double>(before + t + 1) / (before + summary.frames));
+  }
+  video.Finish();
+  if (!network_ms.empty()) summary.network_ms = Percentile(network_ms, 50);
+  return summary;
+}
+
+nlohmann::ordered_json ReportOf(const AnimationSummary& summary, const std::string& out) {
+  return {{"frames", summary.frames},
+          {"frames_without_fit", summary.frames_without_fit},
+          {"picture", {summary.picture.width, summary.picture.height}},
+          {"network_ms_median", summary.network_ms},
+          {"seconds", ToJson(summary.seconds)},
+          {"output", out}};
+}
 
 void RequireOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
   RequireDistinct(inputs, outputs);
@@ -28,10 +75,6 @@ double FramesPerSecond(const Track& track, double otherwise) {
   const std::vector<double>& times = track.motion.timestamps;
   if (times.size() < 2 || !(times.back() > times.front())) return otherwise;
   return static_cast<double>(times.size() - 1) / (times.back() - times.front());
-}
-
-double MedianOf(std::span<const double> milliseconds) {
-  return milliseconds.empty() ? 0 : Percentile(milliseconds, 50);
 }
 
 void WriteSheet(const std::string& path, const std::vector<Image>& pictures, int columns, int cell_height_px) {

@@ -8,7 +8,9 @@
 #include <thread>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/video/image_file.h"
 #include "pipelines/files.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 
@@ -34,25 +36,28 @@ void WriteRunConfig(const TrainingRun& run) {
   WriteFileAtomically((fs::path(run.run_dir) / "config.json").string(), run.config_json);
 }
 
-std::string PreviewPath(const TrainingRun& run, int step) {
+void WritePreview(const TrainingRun& run, int step, const std::vector<std::vector<Image>>& rows, int cell_height_px) {
+  if (rows.empty()) return;
   char name[64];
   std::snprintf(name, sizeof name, "preview_%06d.png", step);
-  return (fs::path(run.run_dir) / name).string();
+  ContactSheetOptions layout;
+  layout.columns = static_cast<int>(rows.front().size());
+  layout.cell_height_px = cell_height_px;
+  std::vector<Image> pictures;
+  for (const std::vector<Image>& row : rows) pictures.insert(pictures.end(), row.begin(), row.end());
+  WriteImage((fs::path(run.run_dir) / name).string(), ContactSheet(pictures, layout));
 }
 
-TrainingProgress::TrainingProgress(int steps, const PipelineCallbacks& callbacks)
-    : steps_(steps), callbacks_(callbacks) {
+void FollowTraining(int steps, const PipelineCallbacks& callbacks, TrainingRun* run) {
   callbacks.Begin("training " + std::to_string(steps) + " steps");
-}
-
-bool TrainingProgress::Update(int step, std::initializer_list<std::pair<const char*, double>> losses,
-                              const double* psnr_db) const {
-  if (!callbacks_.progress) return true;
-  std::ostringstream stage;
-  stage.precision(3);
-  for (const auto& [name, value] : losses) stage << (stage.tellp() > 0 ? ", " : "") << name << ' ' << value;
-  if (psnr_db != nullptr) stage << ", validation " << *psnr_db << " dB";
-  return callbacks_.progress(stage.str(), static_cast<double>(step) / steps_);
+  run->progress = [&callbacks](const TrainingProgress& progress) {
+    std::ostringstream stage;
+    stage.precision(3);
+    for (const auto& [name, value, unit] : progress.figures) {
+      stage << (stage.tellp() > 0 ? ", " : "") << name << ' ' << value << unit;
+    }
+    return callbacks.GoesOn(stage.str(), static_cast<double>(progress.step) / progress.steps);
+  };
 }
 
 void RequireFinite(const TrainingOutcome& outcome, const std::string& out) {

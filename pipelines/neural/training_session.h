@@ -2,12 +2,12 @@
 /// A training session, around the training of any network: the run's folder, its progress, its end.
 #pragma once
 
-#include <initializer_list>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "geometry/base/callbacks.h"
 #include "neural/training/training_run.h"
+#include "render/image/image.h"
 
 namespace bodyloom {
 
@@ -21,23 +21,14 @@ void RequireNoRun(const std::string& out);
 /// config.json, from config_json.
 void WriteRunConfig(const TrainingRun& run);
 
-/// RUN/preview_000250.png.
-std::string PreviewPath(const TrainingRun& run, int step);
+/// RUN/preview_000250.png: rows of as many pictures each, all scaled to one height; nothing without a row.
+void WritePreview(const TrainingRun& run, int step, const std::vector<std::vector<Image>>& rows, int cell_height_px);
 
-/// Tells the caller of a job how its training goes, as a work of its own ("training 400 steps"). Unlike other jobs' a
-/// cancelled training ends with a checkpoint and a summary (TrainingStatus::kStopped), not with Cancelled.
-class TrainingProgress {
- public:
-  /// Begins the work.
-  TrainingProgress(int steps, const PipelineCallbacks& callbacks);
-  /// The stage is "loss 0.12, image 0.034, validation 21.3 dB"; `psnr_db` nullptr: no validation yet. False once the
-  /// caller wants it to stop.
-  bool Update(int step, std::initializer_list<std::pair<const char*, double>> losses, const double* psnr_db) const;
-
- private:
-  int steps_;
-  const PipelineCallbacks& callbacks_;
-};
+/// Tells the caller of a job how its training goes, as a work of its own ("training 400 steps") that begins now. The
+/// stage is "loss 0.12, image 0.034, validation 21.3 dB" (TrainingProgress::figures). Unlike other jobs' a cancelled
+/// training ends with a checkpoint and a summary (TrainingStatus::kStopped), not with Cancelled. `callbacks` must
+/// outlive the training.
+void FollowTraining(int steps, const PipelineCallbacks& callbacks, TrainingRun* run);
 
 /// Throws std::runtime_error when training broke off at a loss that is no number.
 void RequireFinite(const TrainingOutcome& outcome, const std::string& out);

@@ -8,8 +8,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "data_tools/evaluation/ssim.h"
+#include "neural/metrics/person_scores.h"
 #include "neural/networks/named_weights.h"
 
 namespace bodyloom {
@@ -17,12 +19,16 @@ namespace bodyloom {
 /// Empty where the folder has no such file. Shapes are checked by the networks, whose messages name the file.
 struct WeightsFolder {
   WeightsFrom vgg16, vgg19, alexnet, lpips_heads, sphereface;
-  [[nodiscard]] bool has_lpips() const { return !alexnet.empty() && !lpips_heads.empty(); }
 };
 
 /// `folder` empty: everything empty. Throws std::runtime_error naming the folder when it is none or has none of these
 /// files, and the file that cannot be read or holds a tensor that is no number.
 WeightsFolder ReadWeightsFolder(const std::string& folder);
+
+/// What measures how alike pictures of people are.
+inline LikenessWeights LikenessWeightsOf(WeightsFolder weights) {
+  return {std::move(weights.alexnet), std::move(weights.lpips_heads), std::move(weights.vgg19)};
+}
 
 /// "vgg19 vgg19.pth, sphereface not there", one line for the user.
 std::string ToText(const WeightsFolder& weights);

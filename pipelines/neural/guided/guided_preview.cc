@@ -30,29 +30,11 @@ Image OriginPicture(const CoherentMaps& maps, int num_photos) {
 
 }  // namespace
 
-Image GuidedPreviewSheet(const std::vector<GuidedPreview>& previews) {
-  std::vector<Image> pictures;
-  ContactSheetOptions options;
-  options.columns = 7;
-  for (const GuidedPreview& p : previews) {
-    const int size = p.truth.size;
-    pictures.push_back(PictureOf(p.source.image, size, size));
-    pictures.push_back(PictureOf(p.pseudo.image, size, size));
-    pictures.push_back(PictureOf(p.picture.image, size, size));
-    pictures.push_back(PictureOf(p.truth.image, size, size));
-    pictures.push_back(LabelsPicture(p.pseudo.labels, size, size));
-    pictures.push_back(LabelsPicture(p.picture.labels, size, size));
-    pictures.push_back(LabelsPicture(p.truth.labels, size, size));
-    options.cell_height_px = std::max(128, size);
-  }
-  return ContactSheet(pictures, options);
-}
-
-Image GuidedMapsSheet(const CoherentMaps& maps, std::span<const GuidedPicture> virtual_pictures, int num_photos) {
+Image GuidedMapsSheet(const CoherentMaps& maps, std::span<const PersonPicture> virtual_pictures, int num_photos) {
   std::vector<Image> pictures = {PictureOf(maps.appearance, maps.size, maps.size),
                                  LabelsPicture(maps.labels, maps.size, maps.size), OriginPicture(maps, num_photos)};
-  for (const GuidedPicture& p : virtual_pictures) pictures.push_back(PictureOf(p.image, p.size, p.size));
-  for (const GuidedPicture& p : virtual_pictures) pictures.push_back(LabelsPicture(p.labels, p.size, p.size));
+  for (const PersonPicture& p : virtual_pictures) pictures.push_back(PictureOf(p.image, p.size, p.size));
+  for (const PersonPicture& p : virtual_pictures) pictures.push_back(LabelsPicture(p.labels, p.size, p.size));
   ContactSheetOptions options;
   options.columns = 3;
   options.cell_height_px = maps.size;

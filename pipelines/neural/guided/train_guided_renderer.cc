@@ -2,21 +2,18 @@
 #include "pipelines/neural/guided/train_guided_renderer.h"
 
 #include <algorithm>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "data_tools/video/image_file.h"
 #include "geometry/base/check.h"
 #include "neural/photo/photo_window.h"
 #include "pipelines/files.h"
-#include "pipelines/neural/guided/guided_people.h"
-#include "pipelines/neural/guided/guided_preview.h"
-#include "pipelines/neural/guided/guided_scores.h"
+#include "pipelines/neural/guided/virtual_views.h"
 #include "pipelines/neural/training_session.h"
 #include "pipelines/neural/weights_folder.h"
 #include "pipelines/runs/run_config.h"
+#include "render/texture/planar_image.h"
 
 namespace bodyloom {
 namespace {
@@ -42,51 +39,52 @@ std::string Notes(const std::string& data, const TrainGuidedOptions& o) {
 
 int ReachOf(const PhotoSource& people) { return std::min(PhotoReach(people, Everybody(people)), people.size / 4); }
 
+std::vector<Image> RowOf(const GuidedPreview& p) {
+  const int S = p.truth.size;
+  return {PictureOf(p.source.image, S, S),      PictureOf(p.pseudo.image, S, S),
+          PictureOf(p.picture.image, S, S),     PictureOf(p.truth.image, S, S),
+          LabelsPicture(p.pseudo.labels, S, S), LabelsPicture(p.picture.labels, S, S),
+          LabelsPicture(p.truth.labels, S, S)};
+}
+
 }  // namespace
 
-TrainGuidedRendererSummary TrainGuidedRenderer(const TrainGuidedRendererRequest& request,
-                                               const PipelineCallbacks& callbacks) {
+TrainGuidedSummary TrainGuidedRenderer(const TrainGuidedRendererRequest& request, const PipelineCallbacks& callbacks) {
   TrainGuidedOptions options = request.options;
   RequireReadable(request.data, "data");
   OpenTrainingRun(request.out, &options);
   WeightsFolder weights = ReadWeightsFolder(request.weights);
   options.vgg16 = std::move(weights.vgg16);
-  options.score_weights = GuidedScoreWeightsOf(std::move(weights));
+  options.score_weights = LikenessWeightsOf(std::move(weights));
 
-  PeopleDataRequest people;
-  people.data = request.data;
-  people.body = request.body;
-  people.size = options.config.profile.image_size;
-  people.texture_size = options.config.profile.texture_size;
-  const GuidedPeople data(people);
-  std::unique_ptr<GuidedPeople> test;
-  if (HasTestPeople(request.data)) {
-    people.test = true;
-    test = std::make_unique<GuidedPeople>(people);
-    options.validation = test->source();
-    options.validation_views = [&test](int person) { return test->VirtualViewsOf(person); };
+  const GuidedProfile& profile = options.config.profile;
+  const TrainingPeople people(request.data, request.body, profile.image_size, profile.texture_size);
+  if (people.test) {
+    options.validation = people.test->source();
+    options.validation_views = [&](int person) {
+      return VirtualViews(*people.test->body(), people.test->BodyOf(person, 0).motion.betas, profile.image_size,
+                          profile.texture_size);
+    };
   }
   GuidedRun run;
   run.config = options.config;
-  run.reach = options.reach = ReachOf(data.source());
+  run.reach = options.reach = ReachOf(people.train.source());
   run.notes = Notes(request.data, options);
   options.config_json = GuidedRunJson(run);
   WriteRunConfig(options);
-  callbacks.Say(Concatenate(data.source().num_frames.size(), " people to train on, ",
-                            options.validation.num_frames.size(), " kept for validation; profile ",
-                            options.config.profile.name, "; clothes reach ", run.reach, " px beyond the body"));
+  callbacks.Say(Concatenate(people.train.source().num_frames.size(), " people to train on, ",
+                            options.validation.num_frames.size(), " kept for validation; profile ", profile.name,
+                            "; clothes reach ", run.reach, " px beyond the body"));
 
-  const TrainingProgress to_caller(options.steps, callbacks);
-  options.progress = [&](const TrainGuidedProgress& progress) {
-    return to_caller.Update(progress.step, {{"loss", progress.loss}, {"image", progress.image}},
-                            progress.scores.frames > 0 ? &progress.scores.psnr_db : nullptr);
-  };
+  FollowTraining(options.steps, callbacks, &options);
   options.preview = [&](int step, const std::vector<GuidedPreview>& previews) {
-    if (!previews.empty()) WriteImage(PreviewPath(options, step), GuidedPreviewSheet(previews));
+    std::vector<std::vector<Image>> rows;
+    for (const GuidedPreview& preview : previews) rows.push_back(RowOf(preview));
+    WritePreview(options, step, rows, std::max(128, profile.image_size));
   };
-  const TrainGuidedSummary summary = TrainGuided(data.source(), options);
+  const TrainGuidedSummary summary = TrainGuided(people.train.source(), options);
   RequireFinite(summary, request.out);
-  return {summary, CheckpointPath(request.out)};
+  return summary;
 }
 
 }  // namespace bodyloom

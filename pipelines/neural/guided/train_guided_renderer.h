@@ -2,30 +2,18 @@
 /// Trains the pose-guided renderer from files: what `bodyloom train guided` does.
 #pragma once
 
-#include <string>
-
 #include "geometry/base/callbacks.h"
 #include "neural/guided/train_guided.h"
+#include "pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
 
-struct TrainGuidedRendererRequest {
-  std::string data;  ///< a multi-person dataset, or a single-person dataset (one person, all for training)
-  std::string body;  ///< the people's body; empty: the built-in body
-  std::string out;   ///< folder of the run: config.json, checkpoint.bin, metrics.csv, previews
-  std::string
-      weights;  ///< folder with vgg16, alexnet, lpips_alex, vgg19 (pipelines/neural/weights_folder.h); empty: none
-  /// Configuration and numbers; what follows from files (people, reach, weights, run_dir) is filled in by the job.
-  TrainGuidedOptions options;
-};
-
-struct TrainGuidedRendererSummary : TrainGuidedSummary {
-  std::string checkpoint;  ///< the file written, and others beside it
-};
+/// Of `weights`: vgg16, alexnet, lpips_alex, vgg19.
+using TrainGuidedRendererRequest = TrainOnPeopleRequest<TrainGuidedOptions>;
 
 /// A run that was stopped ends with its checkpoint and says so (TrainingStatus::kStopped). Throws RequestError for a
 /// run that is or is not there, std::runtime_error for files that cannot be used and when a loss is not finite.
-TrainGuidedRendererSummary TrainGuidedRenderer(const TrainGuidedRendererRequest& request,
-                                               const PipelineCallbacks& callbacks);
+/// Previews, a row a picture: source, what is known of the target, result and truth, then labels known, made and true.
+TrainGuidedSummary TrainGuidedRenderer(const TrainGuidedRendererRequest& request, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

@@ -157,14 +157,7 @@ TrainLifterNetworkSummary TrainLifterNetwork(const TrainLifterNetworkRequest& re
   callbacks.Say(Concatenate("training on ", train.motions.size(), " clips, ", train.seconds / 60,
                             " minutes; validating on ", test.motions.size(), " clips, ", test.seconds / 60,
                             " minutes"));
-  const TrainingProgress to_caller(options.steps, callbacks);
-  options.progress = [&](const TrainLifterProgress& progress) {
-    if (!(progress.validation_distance > 0)) {
-      return to_caller.Update(progress.step, {{"distance", progress.distance}}, nullptr);
-    }
-    return to_caller.Update(progress.step,
-                            {{"distance", progress.distance}, {"validation", progress.validation_distance}}, nullptr);
-  };
+  FollowTraining(options.steps, callbacks, &options);
   TrainLifterResult result = TrainLifter(SourceOf(train_windows), SourceOf(test_windows), options);
   RequireFinite(result.summary, request.out);
   result.weights.recipe = config.dump();

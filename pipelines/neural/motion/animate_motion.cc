@@ -14,7 +14,6 @@
 #include "data_tools/motion/motion_tools.h"
 #include "data_tools/motion/resample_track.h"
 #include "data_tools/motion/track_io.h"
-#include "data_tools/video/video_writer.h"
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "neural/motion/motion_renderer.h"
@@ -29,7 +28,6 @@
 #include "pipelines/report_json.h"
 #include "pipelines/runs/motion_run.h"
 #include "render/texture/planar_image.h"
-#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -94,7 +92,7 @@ std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track
 }
 
 /// What is opened once and used by every stage.
-class MotionAnimation {
+class MotionAnimation : public FramePainter {
  public:
   MotionAnimation(const AnimateMotionRequest& request, const PipelineCallbacks& callbacks)
       : request_(request), callbacks_(callbacks), scored_(ClipOf(request).IsScored()) {
@@ -109,14 +107,45 @@ class MotionAnimation {
     clock_.Book(kPrepare);
     if (relighter_ && relighter_->wants_frames()) EstimateLight();
     clock_.Book(kLight);
-    RenderFrames();
+    AnimateMotionSummary summary = RenderFrames();
     WriteSheet(request_.sheet, sheet_, sheet_columns_, clip_->frames().window().picture_height);
     if (!request_.frames.empty()) scorer_->errors().WriteCsv(request_.frames);
-    AnimateMotionSummary summary = Summarise();
     WriteReport(request_.json, Report(summary));
     summary.total_seconds = clock_.total();
     return summary;
   }
+
+  const Image& NextBackground() override { return background_->Next(); }
+
+  double Paint(int t, Image* composed) override {
+    clip_->Fill(t, &frame_);
+    ForgetAcrossCuts(t, renderer_.get());
+    clock_.Book(kMaps);
+    shown_ = renderer_->Next(frame_);
+    const double network_s = clock_.Book(kNetwork);
+    if (scorer_) scorer_->AddWindow(t, renderer_->last_scores());
+    if (request_.true_normals) shown_.normals = frame_.normals;
+    if (relighter_) relighter_->Apply(&shown_);
+    Composite(shown_.image, shown_.alpha, clip_->frames().window(), t, composed);
+    if (scorer_) scorer_->AddComposed(t, *composed);
+    return network_s;
+  }
+
+  std::vector<Image> ForSheet(int /*t*/, bool painted, const Image& composed) override {
+    if (!painted) return {};
+    std::vector<Image> pictures = {composed};
+    const int width = shown_.width, height = shown_.height;
+    if (!shown_.labels.empty()) pictures.push_back(LabelsPicture(shown_.labels, width, height));
+    if (!shown_.normals.empty()) pictures.push_back(NormalPicture(shown_.normals, width, height));
+    return pictures;
+  }
+
+  void Written(int t, bool painted, const Image& composed) override {
+    if (set_) set_->Add(t, painted ? shown_ : MotionPicture(), clip_->frames().window(), composed);
+    clock_.Book(kCompose);
+  }
+
+  [[nodiscard]] int FramesBefore() const override { return light_frames_; }
 
  private:
   void OpenRun() {
@@ -181,7 +210,7 @@ class MotionAnimation {
     MotionFrame frame;
     light_frames_ = std::min(FrameRelighter::kFrames, clip_->track().num_frames());
     for (int t = 0; t < light_frames_; ++t) {
-      Update("light", t + 1);
+      callbacks_.Update("light", (t + 1.0) / (light_frames_ + clip_->track().num_frames()));
       if (!clip_->track().HasResult(t)) continue;
       FillWithNormals(t, &frame);
       ForgetAcrossCuts(t, renderer.get());
@@ -192,84 +221,25 @@ class MotionAnimation {
     relighter_->Estimate();
   }
 
-  void RenderFrames() {
+  AnimateMotionSummary RenderFrames() {
     const Track& track = clip_->track();
     const PersonWindow& window = clip_->frames().window();
-    picture_ = SizeOfPictures(window, track.camera, request_.full_size);
-    Background background(request_.background, picture_.width, picture_.height);
+    const PictureSize picture = SizeOfPictures(window, track.camera, request_.full_size);
+    background_.emplace(request_.background, picture.width, picture.height);
     const double own_fps = FrameRateWithoutGaps(track.motion), fps = own_fps > 0 ? own_fps : run_.fps;
     if (scored_) {
       scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_),
-                                             request_.background.empty() ? "" : request_.data, picture_);
+                                             request_.background.empty() ? "" : request_.data, picture);
     }
-    VideoWriter video(request_.out, picture_.width, picture_.height, fps);
-    std::unique_ptr<RenderedDataset> set;
     if (!request_.set.empty()) {
-      set = std::make_unique<RenderedDataset>(request_.set, track, fps, run_.config.shape, run_.config.normals,
-                                              request_.set_command);
+      set_ = std::make_unique<RenderedDataset>(request_.set, track, fps, run_.config.shape, run_.config.normals,
+                                               request_.set_command);
     }
-    const std::vector<int> on_sheet = EvenlySpreadFrames(track.num_frames(), kSheetFrames);
-    for (int t = 0; t < track.num_frames(); ++t) {
-      Image composed = background.Next();
-      MotionPicture picture;
-      if (track.HasResult(t)) {
-        picture = RenderFrame(t, &composed);
-        if (!request_.sheet.empty() && std::binary_search(on_sheet.begin(), on_sheet.end(), t)) {
-          AddToSheet(picture, composed);
-        }
-      } else {
-        ++lost_;
-      }
-      video.Write(composed);
-      if (set) set->Add(t, picture, window, composed);
-      clock_.Book(kCompose);
-      Update("rendering", light_frames_ + t + 1);
-    }
-    video.Finish();
-    if (set) set->Finish();
-    clock_.Book(kCompose);
-  }
-
-  /// Before frame t: what does not follow another frame has no past.
-  void ForgetAcrossCuts(int t, MotionRenderer* renderer) const {
-    const PersonFrames& frames = clip_->frames();
-    if (t > 0 && frames.Segment(t) != frames.Segment(t - 1)) renderer->Restart();
-    if (request_.without_past) renderer->ForgetPast();
-  }
-
-  /// The picture of frame t, laid into `composed`.
-  MotionPicture RenderFrame(int t, Image* composed) {
-    const PersonFrames& frames = clip_->frames();
-    clip_->Fill(t, &frame_);
-    ForgetAcrossCuts(t, renderer_.get());
-    clock_.Book(kMaps);
-    MotionPicture picture = renderer_->Next(frame_);
-    const double network_s = clock_.Book(kNetwork);
-    if (t > 0) network_ms_.push_back(1e3 * network_s);  // the first frame warms up
-    if (scorer_) scorer_->AddWindow(t, renderer_->last_scores());
-    if (request_.true_normals) picture.normals = frame_.normals;
-    if (relighter_) relighter_->Apply(&picture);
-    Composite(picture.image, picture.alpha, frames.window(), t, composed);
-    if (scorer_) scorer_->AddComposed(t, *composed);
-    return picture;
-  }
-
-  /// The pictures of a frame side by side.
-  void AddToSheet(const MotionPicture& picture, const Image& composed) {
-    const size_t before = sheet_.size();
-    sheet_.push_back(composed);
-    if (!picture.labels.empty()) sheet_.push_back(LabelsPicture(picture.labels, picture.width, picture.height));
-    if (!picture.normals.empty()) sheet_.push_back(NormalPicture(picture.normals, picture.width, picture.height));
-    sheet_columns_ = static_cast<int>(sheet_.size() - before);
-  }
-
-  [[nodiscard]] AnimateMotionSummary Summarise() const {
-    const PersonWindow& window = clip_->frames().window();
     AnimateMotionSummary summary;
-    summary.frames = clip_->track().num_frames();
-    summary.frames_without_fit = lost_;
-    summary.picture = picture_;
-    summary.network_ms = MedianOf(network_ms_);
+    static_cast<AnimationSummary&>(summary) =
+        WriteAnimation(request_, track, picture, fps, callbacks_, this, &sheet_, &sheet_columns_);
+    if (set_) set_->Finish();
+    clock_.Book(kCompose);
     summary.seconds = clock_.seconds();
     summary.written = FilesAmong({request_.out, request_.set, request_.sheet, request_.frames, request_.json});
     summary.window_width = window.width, summary.window_height = window.height;
@@ -281,24 +251,21 @@ class MotionAnimation {
     return summary;
   }
 
+  /// Before frame t: what does not follow another frame has no past.
+  void ForgetAcrossCuts(int t, MotionRenderer* renderer) const {
+    const PersonFrames& frames = clip_->frames();
+    if (t > 0 && frames.Segment(t) != frames.Segment(t - 1)) renderer->Restart();
+    if (request_.without_past) renderer->ForgetPast();
+  }
+
   [[nodiscard]] nlohmann::ordered_json Report(const AnimateMotionSummary& summary) const {
-    nlohmann::ordered_json json = {{"frames", summary.frames},
-                                   {"frames_without_fit", summary.frames_without_fit},
-                                   {"window", {summary.window_width, summary.window_height}},
-                                   {"picture", {summary.picture.width, summary.picture.height}},
-                                   {"network_ms_median", summary.network_ms},
-                                   {"descriptors_kept", summary.descriptors_kept},
-                                   {"projections_kept", summary.projections_kept},
-                                   {"seconds", ToJson(summary.seconds)},
-                                   {"output", request_.out}};
+    nlohmann::ordered_json json = ReportOf(summary, request_.out);
+    json["window"] = {summary.window_width, summary.window_height};
+    json["descriptors_kept"] = summary.descriptors_kept;
+    json["projections_kept"] = summary.projections_kept;
     if (relighter_) json["relight"] = relighter_->Json();
     if (summary.scores) json["scores"] = ToJson(*summary.scores);
     return json;
-  }
-
-  /// `done` frames of those rendered for the light and for the video.
-  void Update(const char* stage, int done) const {
-    callbacks_.Update(stage, static_cast<double>(done) / (light_frames_ + clip_->track().num_frames()));
   }
 
   const AnimateMotionRequest& request_;
@@ -310,11 +277,12 @@ class MotionAnimation {
   std::unique_ptr<AnimatedClip> clip_;
   std::unique_ptr<MotionRenderer> renderer_;
   std::unique_ptr<ClipScorer> scorer_;
-  MotionFrame frame_;
-  PictureSize picture_;
+  std::optional<Background> background_;
+  std::unique_ptr<RenderedDataset> set_;
+  MotionFrame frame_;    ///< painted last
+  MotionPicture shown_;  ///< of it
   std::vector<Image> sheet_;
-  std::vector<double> network_ms_;
-  int light_frames_ = 0, sheet_columns_ = 1, lost_ = 0;
+  int light_frames_ = 0, sheet_columns_ = 1;
 };
 
 }  // namespace

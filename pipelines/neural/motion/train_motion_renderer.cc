@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "data_tools/motion/motion_tools.h"
-#include "data_tools/video/image_file.h"
 #include "geometry/base/check.h"
 #include "pipelines/describe/describe_clip.h"
 #include "pipelines/files.h"
@@ -17,6 +16,7 @@
 #include "pipelines/neural/training_session.h"
 #include "pipelines/neural/weights_folder.h"
 #include "pipelines/runs/motion_run.h"
+#include "render/texture/planar_image.h"
 
 namespace bodyloom {
 namespace {
@@ -109,10 +109,25 @@ void SayWhatIsTrained(const MotionRun& run, const PersonWindow& window, const Pi
       run.config.around_body ? Concatenate("; ", run.reach, " px around the body") : "; the whole window"));
 }
 
+std::vector<Image> RowOf(const MotionPreview& p) {
+  const auto or_black = [&](const auto& truth, auto picture_of) {
+    return truth.empty() ? Image(p.width, p.height) : picture_of(truth, p.width, p.height);
+  };
+  std::vector<Image> row = {PictureOf(p.true_image, p.width, p.height), PictureOf(p.image, p.width, p.height)};
+  if (!p.labels.empty()) {
+    row.push_back(or_black(p.true_labels, LabelsPicture));
+    row.push_back(LabelsPicture(p.labels, p.width, p.height));
+  }
+  if (!p.normals.empty()) {
+    row.push_back(or_black(p.true_normals, NormalPicture));
+    row.push_back(NormalPicture(p.normals, p.width, p.height));
+  }
+  return row;
+}
+
 }  // namespace
 
-TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest& request,
-                                               const PipelineCallbacks& callbacks) {
+TrainMotionSummary TrainMotionRenderer(const TrainMotionRendererRequest& request, const PipelineCallbacks& callbacks) {
   TrainMotionOptions options = request.options;
   MotionConfig& config = options.config;
   RequireReadable(request.data.data, "data");
@@ -150,18 +165,16 @@ TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest&
   WriteRunConfig(options);
   SayWhatIsTrained(run, data.frames().window(), callbacks);
 
-  const TrainingProgress to_caller(options.steps, callbacks);
-  options.progress = [&](const TrainMotionProgress& progress) {
-    return to_caller.Update(progress.step, {{"loss", progress.loss}, {"image", progress.image}},
-                            progress.scores.frames > 0 ? &progress.scores.psnr_db : nullptr);
-  };
+  FollowTraining(options.steps, callbacks, &options);
   options.preview = [&](int step, const std::vector<MotionPreview>& previews) {
-    if (!previews.empty()) WriteImage(PreviewPath(options, step), MotionPreviewSheet(previews));
+    std::vector<std::vector<Image>> rows;
+    for (const MotionPreview& preview : previews) rows.push_back(RowOf(preview));
+    if (!previews.empty()) WritePreview(options, step, rows, previews.back().height);
   };
   const TrainMotionSummary summary =
       TrainMotion([&](int t, bool with_truth, MotionFrame* frame) { data.Fill(t, with_truth, frame); }, options);
   RequireFinite(summary, request.out);
-  return {summary, CheckpointPath(request.out)};
+  return summary;
 }
 
 }  // namespace bodyloom

@@ -24,14 +24,9 @@ struct TrainMotionRendererRequest {
   TrainMotionOptions options;
 };
 
-struct TrainMotionRendererSummary : TrainMotionSummary {
-  std::string checkpoint;  ///< the file written, and others beside it
-};
-
 /// A run that was stopped ends with its checkpoint and says so (TrainingStatus::kStopped). Throws RequestError for a
 /// request that contradicts itself or the data, std::runtime_error for files that cannot be used and when a loss is not
-/// finite.
-TrainMotionRendererSummary TrainMotionRenderer(const TrainMotionRendererRequest& request,
-                                               const PipelineCallbacks& callbacks);
+/// finite. Previews, a row a frame: truth and result of the image, then of labels and normals where there are any.
+TrainMotionSummary TrainMotionRenderer(const TrainMotionRendererRequest& request, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

@@ -6,9 +6,7 @@
 
 #include "data_tools/descriptors/person_frames.h"
 #include "neural/motion/rollout_plan.h"
-#include "neural/motion/train_motion.h"
 #include "pipelines/neural/motion/motion_data.h"
-#include "render/image/image.h"
 
 namespace bodyloom {
 
@@ -33,10 +31,5 @@ TrainingFrames ChooseFrames(const TrainingFramesRequest& request, const PersonFr
 /// Pixels that clothes reach beyond the body in frames spread over the ranges (neural/motion/motion_frame.h); 0
 /// without labels.
 int ReachOf(MotionData* data, const std::vector<FrameRange>& ranges);
-
-// Pictures to judge a run of the motion-dependent renderer by.
-
-/// A row a frame: truth and result of the image, then of labels and normals where there are any.
-Image MotionPreviewSheet(const std::vector<MotionPreview>& previews);
 
 }  // namespace bodyloom

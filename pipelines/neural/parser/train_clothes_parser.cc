@@ -36,10 +36,7 @@ TrainClothesParserSummary TrainClothesParser(const TrainClothesParserRequest& re
   options.config_json = recipe.dump(2) + "\n";
   WriteRunConfig(options);
 
-  const TrainingProgress to_caller(options.steps, callbacks);
-  options.progress = [&](const TrainParserProgress& progress) {
-    return to_caller.Update(progress.step, {{"loss", progress.loss}, {"IoU", progress.mean_iou}}, nullptr);
-  };
+  FollowTraining(options.steps, callbacks, &options);
   TrainParserResult result = TrainParser(pictures.train, pictures.test, options);
   RequireFinite(result.summary, request.out);
   result.weights.pixels_per_metre = MedianPersonSize(pictures.train);

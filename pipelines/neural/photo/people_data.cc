@@ -208,6 +208,12 @@ bool HasTestPeople(const std::string& data) {
   return std::any_of(set.people.begin(), set.people.end(), [](const DatasetPerson& person) { return person.test; });
 }
 
+TrainingPeople::TrainingPeople(const std::string& data, const std::string& body, int size, int texture_size)
+    : train({data, body, size, texture_size, false, {}}) {
+  if (!HasTestPeople(data)) return;
+  test = std::make_unique<PeopleData>(PeopleDataRequest{data, body, size, texture_size, true, {}});
+}
+
 std::vector<int> Everybody(const PhotoSource& source) {
   std::vector<int> persons(source.num_frames.size());
   std::iota(persons.begin(), persons.end(), 0);

@@ -70,6 +70,24 @@ class PeopleData {
 /// Whether the dataset `data` has people kept for testing. Throws as PeopleData.
 bool HasTestPeople(const std::string& data);
 
+/// People to train a renderer on, and those who are kept for validation, where there are any.
+struct TrainingPeople {
+  /// In windows and textures of these sizes. Throws as PeopleData.
+  TrainingPeople(const std::string& data, const std::string& body, int size, int texture_size);
+  PeopleData train;
+  std::unique_ptr<PeopleData> test;
+};
+
+template <class Options>
+struct TrainOnPeopleRequest {
+  std::string data;     ///< a multi-person dataset, or a single-person dataset (one person, all for training)
+  std::string body;     ///< the people's body; empty: the built-in body
+  std::string out;      ///< folder of the run: config.json, checkpoint.bin, metrics.csv, previews
+  std::string weights;  ///< folder with trained weights (pipelines/neural/weights_folder.h); empty: none
+  /// Configuration and numbers; what follows from files (people, reach, weights, run_dir) is filled in by the job.
+  Options options;
+};
+
 /// The numbers of all its people.
 std::vector<int> Everybody(const PhotoSource& source);
 

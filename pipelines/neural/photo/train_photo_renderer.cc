@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipelines/neural/photo/train_photo_renderer.h"
 
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "data_tools/evaluation/ssim.h"
-#include "data_tools/video/image_file.h"
 #include "geometry/base/check.h"
 #include "neural/photo/photo_window.h"
 #include "pipelines/files.h"
@@ -16,7 +13,6 @@
 #include "pipelines/neural/weights_folder.h"
 #include "pipelines/runs/run_config.h"
 #include "render/texture/planar_image.h"
-#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
@@ -64,65 +60,45 @@ void SayWhatIsTrained(const TrainPhotoOptions& options, const PipelineCallbacks&
   }
 }
 
+std::vector<Image> RowOf(const PhotoPreview& p) {
+  const int S = p.picture.size, U = p.source.texture_size;
+  return {PictureOf(p.source.image, S, S), PictureOf(p.partial_texture, U, U), PictureOf(p.completed_texture, U, U),
+          PictureOf(p.target.image, S, S), PictureOf(p.picture.image, S, S)};
+}
+
 }  // namespace
 
-TrainPhotoRendererSummary TrainPhotoRenderer(const TrainPhotoRendererRequest& request,
-                                             const PipelineCallbacks& callbacks) {
+TrainPhotoSummary TrainPhotoRenderer(const TrainPhotoRendererRequest& request, const PipelineCallbacks& callbacks) {
   TrainPhotoOptions options = request.options;
   RequireReadable(request.data, "data");
   OpenTrainingRun(request.out, &options);
   ReadPerceptualWeights(request.weights, &options, callbacks);
 
-  PeopleDataRequest people;
-  people.data = request.data;
-  people.body = request.body;
-  people.size = options.config.profile.image_size;
-  people.texture_size = options.config.profile.texture_size;
-  const PeopleData data(people);
-  options.train = Everybody(data.source());
-  std::unique_ptr<PeopleData> test;
-  if (HasTestPeople(request.data)) {
-    people.test = true;
-    test = std::make_unique<PeopleData>(people);
-    options.validation_source = &test->source();
-    options.validation = Everybody(test->source());
+  const PhotoProfile& profile = options.config.profile;
+  const TrainingPeople people(request.data, request.body, profile.image_size, profile.texture_size);
+  options.train = Everybody(people.train.source());
+  if (people.test) {
+    options.validation_source = &people.test->source();
+    options.validation = Everybody(people.test->source());
   }
   PhotoRun run;
   run.config = options.config;
-  run.reach = options.reach = PhotoReach(data.source(), options.train);
+  run.reach = options.reach = PhotoReach(people.train.source(), options.train);
   run.notes = Notes(request.data, options);
   options.config_json = PhotoRunJson(run);
   WriteRunConfig(options);
   SayWhatIsTrained(options, callbacks);
 
-  const TrainingProgress to_caller(options.TotalSteps(), callbacks);
-  options.ssim = [](const Image& truth, const Image& result) { return Ssim(truth, result, SsimPreset::kWang2004); };
-  options.progress = [&](const TrainPhotoProgress& progress) {
-    return to_caller.Update(progress.step, {{"loss", progress.loss}},
-                            progress.scores.pictures > 0 ? &progress.scores.psnr_db : nullptr);
-  };
+  options.ssim = WindowSsim;
+  FollowTraining(options.TotalSteps(), callbacks, &options);
   options.preview = [&](int step, const std::vector<PhotoPreview>& previews) {
-    WriteImage(PreviewPath(options, step), PhotoPreviewSheet(previews));
+    std::vector<std::vector<Image>> rows;
+    for (const PhotoPreview& preview : previews) rows.push_back(RowOf(preview));
+    WritePreview(options, step, rows, profile.image_size);
   };
-  const TrainPhotoSummary summary = TrainPhoto(data.source(), options);
+  const TrainPhotoSummary summary = TrainPhoto(people.train.source(), options);
   RequireFinite(summary, request.out);
-  return {summary, CheckpointPath(request.out)};
-}
-
-Image PhotoPreviewSheet(const std::vector<PhotoPreview>& previews) {
-  std::vector<Image> pictures;
-  ContactSheetOptions options;
-  options.columns = 5;
-  for (const PhotoPreview& p : previews) {
-    const int S = p.picture.size, U = p.source.texture_size;
-    pictures.push_back(PictureOf(p.source.image, S, S));
-    pictures.push_back(PictureOf(p.partial_texture, U, U));
-    pictures.push_back(PictureOf(p.completed_texture, U, U));
-    pictures.push_back(PictureOf(p.target.image, S, S));
-    pictures.push_back(PictureOf(p.picture.image, S, S));
-    options.cell_height_px = S;
-  }
-  return ContactSheet(pictures, options);
+  return summary;
 }
 
 }  // namespace bodyloom

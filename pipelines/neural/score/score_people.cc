@@ -2,7 +2,6 @@
 #include "pipelines/neural/score/score_people.h"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -13,7 +12,7 @@
 #include "neural/guided/choose_photos.h"
 #include "pipelines/files.h"
 #include "pipelines/neural/animation.h"
-#include "pipelines/neural/guided/guided_scores.h"
+#include "pipelines/neural/person/scores_json.h"
 #include "pipelines/neural/score/scored_renderer.h"
 #include "pipelines/neural/weights_folder.h"
 #include "pipelines/report_json.h"
@@ -48,7 +47,7 @@ nlohmann::ordered_json Report(const ScorePeopleSummary& summary) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const ScoredPhotos& s : summary.scored) {
     nlohmann::ordered_json row = {
-        {"photos", s.photos}, {"texels_seen", s.texels_seen}, {"people_missing", s.missing}, {"ssim", s.ssim}};
+        {"photos", s.photos}, {"texels_seen", s.texels_seen}, {"people_missing", s.missing}, {"ssim", s.scores.ssim}};
     row.update(ToJson(s.scores));
     rows.push_back(row);
   }
@@ -65,13 +64,13 @@ ScorePeopleSummary Score(const ScorePeopleRequest& request, ScoredRenderer* rend
         PeopleDataRequest{request.data, request.body, source.size, source.texture_size, true, {}});
   }
   const int count = static_cast<int>(source.num_frames.size());
-  std::vector<std::unique_ptr<GuidedScorer>> scorers;
+  std::vector<PersonScorer> scorers;
   ScorePeopleSummary summary;
   summary.given = ToText(request.given);
   std::vector<ScoredPhotos>& scored = summary.scored;
-  const GuidedScoreWeights weights = GuidedScoreWeightsOf(ReadWeightsFolder(request.weights));
+  const PersonScoring scoring = LikenessScoring(LikenessWeightsOf(ReadWeightsFolder(request.weights)), WindowSsim);
   for (const int photos : request.photos) {
-    scorers.push_back(std::make_unique<GuidedScorer>(true, weights));
+    scorers.emplace_back(scoring);
     scored.emplace_back().photos = photos;
   }
   std::vector<Image> sheet;
@@ -87,10 +86,8 @@ ScorePeopleSummary Score(const ScorePeopleRequest& request, ScoredRenderer* rend
       for (const int k : EvenlySpreadFrames(static_cast<int>(chosen.others.size()), request.frames)) {
         PhotoFrame other;
         source.fill(person, chosen.others[k], &other);
-        const GuidedPicture picture = renderer->Render(chosen.others[k], other);
-        scorers[n]->Add(picture, other);
-        scored[n].ssim += WindowSsim(PictureOf(other.image, other.size, other.size),
-                                     PictureOf(picture.image, picture.size, picture.size));
+        const PersonPicture picture = renderer->Render(chosen.others[k], other);
+        scorers[n].Add(picture, other);
         if (request.sheet.empty() || n != 0 || k != 0) continue;
         const int size = other.size;
         for (const std::vector<float>& shown :
@@ -98,15 +95,11 @@ ScorePeopleSummary Score(const ScorePeopleRequest& request, ScoredRenderer* rend
           sheet.push_back(PictureOf(shown, size, size));
         }
       }
-      scorers[n]->NextPerson();
+      scorers[n].NextPerson();
       callbacks.Update("people", (person + (n + 1.0) / static_cast<double>(scored.size())) / count);
     }
   }
-  for (size_t n = 0; n < scored.size(); ++n) {
-    scored[n].scores = scorers[n]->Scores();
-    scored[n].ssim /= std::max(1, scored[n].scores.frames);
-    if (!renderer->DrawsLabels()) scored[n].scores.label_iou = std::numeric_limits<double>::quiet_NaN();
-  }
+  for (size_t n = 0; n < scored.size(); ++n) scored[n].scores = scorers[n].Scores();
   WriteSheet(request.sheet, sheet, kPairColumns, std::max(kSmallestPairCell, source.size));
   WriteReport(request.json, Report(summary));
   summary.written = FilesAmong({request.sheet, request.json});
@@ -122,9 +115,9 @@ void CheckRequest(const ScorePeopleRequest& request) {
 std::unique_ptr<ScoredRenderer> RendererOf(const ScorePeopleRequest& request) {
   switch (request.renderer) {
     case PeopleRenderer::kPhoto:
-      return MakeScoredPhoto(request);
+      return MakeScoredRun(request, PersonRendererKind::kPhoto);
     case PeopleRenderer::kGuided:
-      return MakeScoredGuided(request);
+      return MakeScoredRun(request, PersonRendererKind::kGuided);
     case PeopleRenderer::kPerson:
       return MakeScoredPerson(request);
     case PeopleRenderer::kWarp:

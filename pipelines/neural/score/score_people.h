@@ -4,7 +4,7 @@
 ///
 /// Of each test person the photos are those of ChoosePhotos (neural/guided/choose_photos.h) on true labels and bodies,
 /// whatever is given to the renderer; the pictures to compare with are spread over the others. So all renderers, and
-/// every setting of one, draw the same pictures from the same photos, and one class measures them (GuidedScorer).
+/// every setting of one, draw the same pictures from the same photos, and one class measures them (PersonScorer).
 /// Windows of the networks have the size of the run's profile: runs to be compared are of one image size. Where bodies
 /// are estimated the windows follow them.
 #pragma once
@@ -15,7 +15,7 @@
 
 #include "geometry/base/callbacks.h"
 #include "neural/guided/guided_config.h"
-#include "neural/guided/guided_scores.h"
+#include "neural/metrics/person_scores.h"
 #include "pipelines/neural/photo/people_data.h"
 
 namespace bodyloom {
@@ -51,8 +51,7 @@ struct ScorePeopleRequest {
 
 struct ScoredPhotos {
   int photos = 0;
-  GuidedScores scores;     ///< label_iou is NaN of a renderer that draws no labels
-  double ssim = 0;         ///< of the windows (pipelines/neural/weights_folder.h), mean over pictures
+  PersonScores scores;     ///< SSIM of the windows by pipelines/neural/weights_folder.h
   double texels_seen = 0;  ///< share of the atlas that the photos fill, mean over people
   int missing = 0;         ///< people of whom the photos show too little: drawn as nobody, and counted
 };

@@ -27,13 +27,12 @@ class ScoredWarp : public ScoredRenderer {
 
   [[nodiscard]] const PeopleData& people() const override { return people_; }
   double SetPhotos(int /*person*/, std::span<const int> /*frames*/, std::span<const PhotoFrame> photos) override {
-    shown_ = MapsOf(photos, people_.source());
-    return ShareSeen(shown_, photos.size());
+    shown_ = MapsOf(photos, people_.source().texel_parts);
+    return ShareFilled(shown_, photos.size());
   }
-  GuidedPicture Render(int /*frame*/, const PhotoFrame& pose) override {
-    GuidedPicture picture = {pose.size, ShownOf(pose), {}, {}};
+  PersonPicture Render(int /*frame*/, const PhotoFrame& pose) override {
+    PersonPicture picture = {pose.size, ShownOf(pose), {}, {}};
     for (const uint8_t part : pose.parts) picture.alpha.push_back(part != 0 ? 1 : 0);
-    picture.labels = SomebodyOf(picture.alpha);
     return picture;
   }
   [[nodiscard]] std::vector<float> ShownOf(const PhotoFrame& pose) const override { return LookUp(shown_, pose).image; }
@@ -53,16 +52,16 @@ class ScoredPerson : public ScoredRenderer {
   [[nodiscard]] const PeopleData& people() const override { return people_; }
   double SetPhotos(int person, std::span<const int> frames, std::span<const PhotoFrame> photos) override {
     number_ = person;
-    shown_ = MapsOf(photos, people_.source());
+    shown_ = MapsOf(photos, people_.source().texel_parts);
     FitClothesOptions clothes;
     clothes.num_threads = threads_;
     painter_.reset();
     person_ = PersonOfFrames(people_, person, frames, photos, texture_size_, clothes);
     if (person_) painter_.emplace(*person_, threads_);
-    return ShareSeen(shown_, photos.size());
+    return ShareFilled(shown_, photos.size());
   }
   [[nodiscard]] bool HasPerson() const override { return person_.has_value(); }
-  GuidedPicture Render(int frame, const PhotoFrame& pose) override {
+  PersonPicture Render(int frame, const PhotoFrame& pose) override {
     Image picture(pose.size, pose.size);
     std::vector<uint8_t> coverage(static_cast<size_t>(pose.size) * pose.size, 0);
     if (person_) {
@@ -70,19 +69,18 @@ class ScoredPerson : public ScoredRenderer {
         painter_->Draw(body->vertices_in_camera, body->camera, &picture, &coverage);
       }
     }
-    return GuidedPictureOf(picture, coverage);
+    return PersonPictureOf(picture, coverage);
   }
   [[nodiscard]] std::vector<float> ShownOf(const PhotoFrame& pose) const override { return LookUp(shown_, pose).image; }
 
  private:
-  static GuidedPicture GuidedPictureOf(const Image& picture, std::span<const uint8_t> coverage) {
+  static PersonPicture PersonPictureOf(const Image& picture, std::span<const uint8_t> coverage) {
     const size_t pixels = coverage.size();
-    GuidedPicture result = {picture.width, std::vector<float>(3 * pixels), {}, {}};
+    PersonPicture result = {picture.width, std::vector<float>(3 * pixels), {}, {}};
     for (size_t i = 0; i < pixels; ++i) {
       for (size_t c = 0; c < 3; ++c) result.image[c * pixels + i] = picture.bgr[3 * i + 2 - c] / 255.0F;
       result.alpha.push_back(coverage[i] / 255.0F);
     }
-    result.labels = SomebodyOf(result.alpha);
     return result;
   }
 

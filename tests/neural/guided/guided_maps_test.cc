@@ -9,9 +9,9 @@
 #include "neural/guided/choose_photos.h"
 #include "neural/guided/complete_maps.h"
 #include "neural/guided/guided_batches.h"
-#include "neural/guided/guided_scores.h"
 #include "neural/metrics/contextual_similarity.h"
 #include "neural/metrics/lpips.h"
+#include "neural/metrics/person_scores.h"
 #include "render/texture/complete/body_part_map.h"
 #include "tests/neural/guided/guided_toy.h"
 #include "tests/neural/metrics/named_features.h"
@@ -175,12 +175,12 @@ TEST(CoherentMaps, TheFirstPictureOfATexelStays) {
   empty.labels.assign(empty.labels.size(), 0);
   CoherentMaps none = EmptyMaps(kToyTexels, ToyTexelParts());
   EXPECT_EQ(FillEmptyTexels(empty, OwnPicture(empty), 1, {}, &none), 0);
-  EXPECT_THROW(FillEmptyTexels(ToyPhotoFrame(0, {}, false), GuidedPicture{}, 1, {}, &none), std::invalid_argument);
+  EXPECT_THROW(FillEmptyTexels(ToyPhotoFrame(0, {}, false), PersonPicture{}, 1, {}, &none), std::invalid_argument);
 }
 
 /// Draws what it was given, as if nothing were to be completed.
-GuidedPicture Repeat(const PhotoFrame& frame, const PseudoPicture& pseudo) {
-  GuidedPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
+PersonPicture Repeat(const PhotoFrame& frame, const PseudoPicture& pseudo) {
+  PersonPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
   for (size_t i = 0; i < pseudo.known.size(); ++i) picture.alpha[i] = pseudo.known[i] != 0 ? 1.0F : 0.0F;
   return picture;
 }
@@ -189,7 +189,7 @@ TEST(CompleteMaps, TheBackIsTheFrontWithoutItsFace) {
   const PhotoFrame source = ToyPhotoFrame(1, {1, 1, false}, true);
   CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
   FillEmptyTexels(source, OwnPicture(source), 1, {}, &maps);
-  const std::vector<GuidedPicture> pictures = CompleteMaps(ToyViews(), Repeat, 2, &maps);
+  const std::vector<PersonPicture> pictures = CompleteMaps(ToyViews(), Repeat, 2, &maps);
   ASSERT_EQ(pictures.size(), 6U);
   int back = 0, shirt = 0, hair = 0, faces = 0;
   for (int r = 0; r < kToyTexels; ++r) {
@@ -226,7 +226,7 @@ TEST(CompleteMaps, NobodyPutsAFaceOnTheBack) {
   CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
   EXPECT_EQ(FillEmptyTexels(behind, OwnPicture(behind), 1, no_face, &maps), 64);
   const auto all_face = [](const PhotoFrame& frame, const PseudoPicture& pseudo) {
-    GuidedPicture picture = Repeat(frame, pseudo);
+    PersonPicture picture = Repeat(frame, pseudo);
     for (size_t i = 0; i < picture.labels.size(); ++i) {
       if (frame.parts[i] == 0) continue;
       picture.labels[i] = 3;
@@ -290,8 +290,8 @@ TEST(ChoosePhotos, AFaceFirstThenWhatIsMissing) {
 
 TEST(GuidedScores, AreWhatTheyShouldBe) {
   const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
-  GuidedPicture picture = OwnPicture(truth);
-  GuidedScorer perfect(true), off(false);
+  PersonPicture picture = OwnPicture(truth);
+  PersonScorer perfect(LikenessScoring()), off;
   perfect.Add(picture, truth);
   EXPECT_EQ(perfect.Scores().image_l1, 0);
   EXPECT_EQ(perfect.Scores().silhouette_iou, 1);
@@ -323,18 +323,18 @@ TEST(GuidedScores, AreWhatTheyShouldBe) {
 
 TEST(GuidedScores, TrainedWeightsMeasureWhereTheyAreGiven) {
   const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
-  GuidedPicture darker = OwnPicture(truth);
+  PersonPicture darker = OwnPicture(truth);
   for (float& value : darker.image) value *= 0.8F;
-  const auto scores = [&](const GuidedScoreWeights& weights) {
-    GuidedScorer scorer(true, weights);
+  const auto scores = [&](const LikenessWeights& weights) {
+    PersonScorer scorer(LikenessScoring(weights));
     scorer.Add(darker, truth);
     return scorer.Scores();
   };
   const FeatureTrunk vgg = FeatureTrunk::kVgg19;
-  const GuidedScoreWeights weights = {{AlexNetWeights(), "alexnet.pth"},
-                                      {HeadWeights(), "lpips_alex.pth"},
-                                      {TrunkWeights(vgg, FeatureLayers(vgg, {"relu4_2"})[0]), "vgg19.pth"}};
-  const GuidedScores trained = scores(weights), random = scores({});
+  const LikenessWeights weights = {{AlexNetWeights(), "alexnet.pth"},
+                                   {HeadWeights(), "lpips_alex.pth"},
+                                   {TrunkWeights(vgg, FeatureLayers(vgg, {"relu4_2"})[0]), "vgg19.pth"}};
+  const PersonScores trained = scores(weights), random = scores({});
   const Image picture = ToImage(torch::tensor(darker.image).view({3, 32, 32}));
   const Image true_picture = ToImage(torch::tensor(truth.image).view({3, 32, 32}));
   EXPECT_FALSE(trained.lpips_random_features || trained.contextual_random_features);
@@ -347,17 +347,17 @@ TEST(GuidedScores, TrainedWeightsMeasureWhereTheyAreGiven) {
   // The substitute is that of every other renderer.
   EXPECT_NEAR(random.lpips, Lpips().Distance(picture, true_picture).value, 1e-4 * random.lpips);
   // Either without the other.
-  const GuidedScores half = scores({weights.alexnet, weights.lpips_heads, {}});
+  const PersonScores half = scores({weights.alexnet, weights.lpips_heads, {}});
   EXPECT_TRUE(!half.lpips_random_features && half.contextual_random_features);
 }
 
 TEST(GuidedScores, StabilityIsWithinAPerson) {
   const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
-  GuidedPicture darker = OwnPicture(truth), darkest = darker;
+  PersonPicture darker = OwnPicture(truth), darkest = darker;
   for (float& value : darker.image) value *= 0.8F;
   for (float& value : darkest.image) value *= 0.5F;
-  const auto distance = [&](const GuidedPicture& picture) {
-    GuidedScorer scorer(true);
+  const auto distance = [&](const PersonPicture& picture) {
+    PersonScorer scorer(LikenessScoring());
     scorer.Add(picture, truth);
     EXPECT_EQ(scorer.Scores().lpips_deviation, 0) << "one frame";
     return scorer.Scores().lpips;
@@ -365,8 +365,8 @@ TEST(GuidedScores, StabilityIsWithinAPerson) {
   const double a = distance(darker), b = distance(darkest);
   ASSERT_GT(std::abs(a - b), 1e-4);
   // Two people who are each drawn the same in every frame, one of them badly: steady.
-  GuidedScorer steady(true), unsteady(true);
-  for (const GuidedPicture* person : {&darker, &darkest}) {
+  PersonScorer steady(LikenessScoring()), unsteady(LikenessScoring());
+  for (const PersonPicture* person : {&darker, &darkest}) {
     for (int k = 0; k < 3; ++k) steady.Add(*person, truth);
     steady.NextPerson();
   }

@@ -294,7 +294,7 @@ TEST(GuidedPictures, WhereThePersonIsTheLikeliestGarmentCounts) {
   result.label_logits.slice(1, 6, 7).fill_(5);
   result.label_logits.slice(1, 3, 4).slice(3, 16).fill_(7);
   result.classes = torch::zeros({1, 1, 32, 32});
-  const GuidedPicture picture = PictureOf(result, {}, 0, {0, 0, 8, 8}, 4, 32);
+  const PersonPicture picture = PictureOf(result, {}, 0, {0, 0, 8, 8}, 4, 32);
   EXPECT_EQ(picture.labels[0], 0) << "off the person";
   EXPECT_EQ(picture.labels[5 * 32 + 3], 6);
   EXPECT_EQ(picture.labels[5 * 32 + 20], 3);

@@ -127,8 +127,8 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
   EXPECT_THROW(renderer.Render(photos[0]), std::invalid_argument);
   renderer.SetSource(std::span(photos).first(1), {kTexelParts, kViews});
   EXPECT_EQ(renderer.virtual_pictures().size(), 6U);
-  const GuidedPicture picture = renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false));
-  GuidedScorer scorer(false);
+  const PersonPicture picture = renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false));
+  PersonScorer scorer;
   scorer.Add(picture, ToyPhotoFrame(0, ToyPoseOf(1), true));
   EXPECT_NEAR(scorer.Scores().image_l1, summary.scores.image_l1, 1e-6);
   EXPECT_EQ(renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false)).image, picture.image);
@@ -165,7 +165,7 @@ TEST(GuidedTraining, AResumedRunEndsWithTheSameBytes) {
       options->balance_steps = balance_steps;
     }
     ASSERT_EQ(TrainGuided(ToyPeople(3, 4), whole).status, TrainingStatus::kFinished);
-    parts.progress = [](const TrainGuidedProgress& progress) { return progress.step < 4; };
+    parts.progress = [](const TrainingProgress& progress) { return progress.step < 4; };
     const TrainGuidedSummary stopped = TrainGuided(ToyPeople(3, 4), parts);
     EXPECT_EQ(stopped.status, TrainingStatus::kStopped);
     EXPECT_EQ(stopped.steps, 4);
@@ -221,8 +221,8 @@ TEST(GuidedTraining, LossesAreWeightedAsPublished) {
   options.steps = options.report_every = options.checkpoint_every = 4;
   options.balance_steps = 2;
   std::vector<double> totals;
-  options.progress = [&](const TrainGuidedProgress& progress) {
-    totals.push_back(progress.loss);
+  options.progress = [&](const TrainingProgress& progress) {
+    totals.push_back(progress.At("loss"));
     return true;
   };
   const TrainGuidedSummary summary = TrainGuided(ToyPeople(2, 4), options);
@@ -283,7 +283,7 @@ TEST(GuidedTraining, CompletesTheMapsByTheirNeighbours) {
   renderer.SetSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours});
   EXPECT_TRUE(renderer.virtual_pictures().empty());
   for (const uint8_t from : renderer.maps().from) EXPECT_NE(from, 0);
-  const GuidedPicture guessed = renderer.Render(pose);
+  const PersonPicture guessed = renderer.Render(pose);
   // The same networks and the paper's completion, and none.
   for (const MapCompletion completion : {MapCompletion::kVirtualViews, MapCompletion::kNone}) {
     GuidedRenderer other(CheckpointPath(options.run_dir), options.config, {2, completion, 1});

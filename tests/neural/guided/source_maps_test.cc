@@ -77,7 +77,7 @@ TEST(MapsOfSource, ABackOfTheHeadThatIsSeenStaysWhateverItIsCalled) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photos[] = {LabelledByParts({}), LabelledByParts({2, 1, true})};
   const auto repeat = [](const PhotoFrame& frame, const PseudoPicture& pseudo) {
-    GuidedPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
+    PersonPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
     std::copy(pseudo.known.begin(), pseudo.known.end(), picture.alpha.begin());
     return picture;
   };

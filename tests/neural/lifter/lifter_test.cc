@@ -274,7 +274,7 @@ TEST_F(LifterTraining, AnInterruptedRunEndsWithTheSameBytes) {
   EXPECT_EQ(NumLines(whole_metrics), 1 + 8);
   fs::remove_all(folder_);
   fs::create_directories(folder_);
-  options_.progress = [](const TrainLifterProgress& progress) { return progress.step < 25; };
+  options_.progress = [](const TrainingProgress& progress) { return progress.step < 25; };
   const TrainLifterResult part = TrainLifter(Source(), Source(), options_);
   EXPECT_EQ(part.summary.status, TrainingStatus::kStopped);
   EXPECT_EQ(part.summary.steps, 25);

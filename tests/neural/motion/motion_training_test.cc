@@ -125,7 +125,7 @@ TEST(MotionTraining, LearnsAClipByHeartAndRollsItOut) {
 void ExpectResumedEnd(const TrainMotionOptions& whole, const std::string& name) {
   TrainMotionOptions parts = whole;
   parts.run_dir = EmptyFolder(name);
-  parts.progress = [](const TrainMotionProgress& progress) { return progress.step < 4; };
+  parts.progress = [](const TrainingProgress& progress) { return progress.step < 4; };
   const TrainMotionSummary stopped = TrainMotion(ToyFrame, parts);
   EXPECT_EQ(stopped.status, TrainingStatus::kStopped);
   EXPECT_EQ(stopped.steps, 4);

@@ -152,7 +152,7 @@ TEST(PersonBox, ATrainingInBoxesLearnsAndIsResumedExactly) {
   EXPECT_GT(summary.scores.label_iou, 0.7);
   TrainMotionOptions parts = options;
   parts.run_dir = EmptyFolder("box_parts");
-  parts.progress = [](const TrainMotionProgress& progress) { return progress.step < 80; };
+  parts.progress = [](const TrainingProgress& progress) { return progress.step < 80; };
   EXPECT_EQ(TrainMotion(source, parts).status, TrainingStatus::kStopped);
   parts.progress = nullptr;
   parts.resume = true;

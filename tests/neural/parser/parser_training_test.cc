@@ -77,8 +77,8 @@ TEST(ParserTraining, PixelsWithoutAPersonDoNotCount) {
   TrainParserOptions options = FewSteps("count");
   options.steps = options.report_every = 1;
   double loss = -1;
-  options.progress = [&loss](const TrainParserProgress& progress) {
-    loss = progress.loss;
+  options.progress = [&loss](const TrainingProgress& progress) {
+    loss = progress.At("loss");
     return true;
   };
   TrainParser(pictures, {}, options);
@@ -86,8 +86,8 @@ TEST(ParserTraining, PixelsWithoutAPersonDoNotCount) {
   for (PackedPicture& picture : pictures) std::fill(picture.truth.begin(), picture.truth.end(), uint8_t{0});
   options = FewSteps("count");
   options.steps = options.report_every = 1;
-  options.progress = [&loss](const TrainParserProgress& progress) {
-    loss = progress.loss;
+  options.progress = [&loss](const TrainingProgress& progress) {
+    loss = progress.At("loss");
     return true;
   };
   TrainParser(pictures, {}, options);
@@ -101,7 +101,7 @@ TEST(ParserTraining, GoesOnAsIfItHadNeverStopped) {
   whole.report_every = parts.report_every = 3;
   const std::vector<PackedPicture> train = RedTops(0, 3);
   TrainParser(train, {}, whole);
-  parts.progress = [](const TrainParserProgress& progress) { return progress.step < 6; };
+  parts.progress = [](const TrainingProgress& progress) { return progress.step < 6; };
   EXPECT_EQ(TrainParser(train, {}, parts).summary.status, TrainingStatus::kStopped);
   parts.progress = nullptr;
   parts.resume = true;

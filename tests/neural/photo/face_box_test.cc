@@ -6,7 +6,7 @@
 #include "data_tools/descriptors/photo_maps.h"
 #include "neural/guided/complete_maps.h"
 #include "neural/photo/photo_batch.h"
-#include "pipelines/neural/guided/guided_people.h"
+#include "pipelines/neural/guided/virtual_views.h"
 #include "pipelines/neural/photo/photo_input.h"
 #include "render/texture/complete/body_part_map.h"
 #include "tests/neural/photo/toy_photos.h"

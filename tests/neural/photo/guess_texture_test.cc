@@ -289,7 +289,7 @@ TEST(GuessTexture, TrainsResumesAndRenders) {
   whole.preview = [&](int, const std::vector<PhotoPreview>& made) { previews = made; };
   ASSERT_EQ(TrainPhoto(source, whole).status, TrainingStatus::kFinished);
   TrainPhotoOptions parts = ToyOptions("guess_parts", ToyGuessConfig());
-  parts.progress = [](const TrainPhotoProgress& progress) { return progress.step < 3; };
+  parts.progress = [](const TrainingProgress& progress) { return progress.step < 3; };
   EXPECT_EQ(TrainPhoto(source, parts).status, TrainingStatus::kStopped);
   parts.progress = nullptr;
   parts.resume = true;

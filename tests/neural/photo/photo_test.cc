@@ -10,11 +10,11 @@
 #include <limits>
 #include <set>
 
+#include "neural/metrics/person_scores.h"
 #include "neural/networks/architecture_card.h"
 #include "neural/photo/photo_batch.h"
 #include "neural/photo/photo_losses.h"
 #include "neural/photo/photo_model.h"
-#include "neural/photo/photo_scores.h"
 #include "tests/neural/photo/toy_photos.h"
 #include "tests/support/gradient_check.h"
 
@@ -454,28 +454,29 @@ TEST(PhotoLosses, FaceLossSeesFacesOnly) {
 }
 
 TEST(PhotoScores, AreWhatTheyShouldBeBesideTheTruth) {
-  const Lpips lpips;
+  const auto lpips = std::make_shared<const Lpips>();
   PhotoFrame truth;
   FillToyPhoto(0, 0, &truth);
-  PhotoPicture picture;
+  PersonPicture picture;
   picture.size = kToySize;
   picture.image = truth.image;
   picture.alpha.assign(truth.labels.begin(), truth.labels.end());
-  PhotoScorer perfect(lpips, [](const Image&, const Image&) { return 0.75; });
+  PersonScorer perfect({lpips, nullptr, [](const Image&, const Image&) { return 0.75; }});
   perfect.Add(picture, truth);
   EXPECT_EQ(perfect.Scores().image_l1, 0);
   EXPECT_EQ(perfect.Scores().silhouette_iou, 1);
   EXPECT_EQ(perfect.Scores().ssim, 0.75);
   EXPECT_EQ(perfect.Scores().lpips, 0);
   EXPECT_TRUE(perfect.Scores().lpips_random_features);
-  PhotoScorer off(lpips, {});
+  EXPECT_TRUE(std::isnan(perfect.Scores().label_iou)) << "no labels are drawn";
+  PersonScorer off({lpips});
   for (const float by : {0.1F, 0.3F}) {
     for (size_t i = 0; i < picture.image.size(); ++i) picture.image[i] = truth.image[i] + by;
     picture.alpha.assign(picture.alpha.size(), 1);
     off.Add(picture, truth);
   }
-  const PhotoScores scores = off.Scores();
-  EXPECT_EQ(scores.pictures, 2);
+  const PersonScores scores = off.Scores();
+  EXPECT_EQ(scores.frames, 2);
   EXPECT_NEAR(scores.image_l1, 0.2, 1e-6);
   EXPECT_NEAR(scores.psnr_db, -10 * std::log10((0.01 + 0.09) / 2), 1e-4);
   EXPECT_NEAR(scores.silhouette_iou, 28.0 * 44 / (64 * 64), 1e-6);

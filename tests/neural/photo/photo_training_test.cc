@@ -38,7 +38,7 @@ TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
   options.preview = [&](int, const std::vector<PhotoPreview>& made) { previews = made; };
   const TrainPhotoSummary summary = TrainPhoto(source, options);
   ASSERT_EQ(summary.status, TrainingStatus::kFinished) << summary.message;
-  EXPECT_EQ(summary.scores.pictures, 4);
+  EXPECT_EQ(summary.scores.frames, 4);
   // An untrained network paints grey, 0.25 off, and is half transparent everywhere.
   EXPECT_LT(summary.scores.image_l1, 0.1);
   EXPECT_GT(summary.scores.silhouette_iou, 0.95);
@@ -66,7 +66,7 @@ TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
     }
   }
   EXPECT_LT(error / (1.5 * kToyTexture * kToyTexture), 0.1);
-  const PhotoPicture picture = renderer.Render(back);
+  const PersonPicture picture = renderer.Render(back);
   for (const PhotoPreview& preview : previews) {
     if (preview.pair.person != 1 || preview.pair.source != 0) continue;
     EXPECT_EQ(preview.picture.image, picture.image) << "training's validation rendered another picture";
@@ -93,7 +93,7 @@ TEST(PhotoTraining, AResumedRunEndsWithTheSameBytes) {
     ASSERT_EQ(TrainPhoto(source, whole).status, TrainingStatus::kFinished);
     TrainPhotoOptions parts = ToyOptions("photo_parts", variant);
     parts.gan_from = gan_from;
-    parts.progress = [stop = stop](const TrainPhotoProgress& progress) { return progress.step < stop; };
+    parts.progress = [stop = stop](const TrainingProgress& progress) { return progress.step < stop; };
     const TrainPhotoSummary stopped = TrainPhoto(source, parts);
     EXPECT_EQ(stopped.status, TrainingStatus::kStopped);
     EXPECT_EQ(stopped.steps, stop);
@@ -196,7 +196,7 @@ TEST(PhotoTraining, InpaintingTrainsOneNetworkAfterTheOther) {
     pictures.push_back(renderer.Render(frame).image);
   };
   for (const int stop : {3, 6, 9}) {
-    options.progress = [stop](const TrainPhotoProgress& progress) { return progress.step < stop; };
+    options.progress = [stop](const TrainingProgress& progress) { return progress.step < stop; };
     (void)TrainPhoto(source, options);
     look();
     options.resume = true;
@@ -326,7 +326,7 @@ TEST(PhotoRenderer, ComputesOnlyWhatIsNearTheBody) {
   source.fill(0, 1, &frame);
   near.Encode(PartialTextureOf(frame));
   everywhere.Encode(PartialTextureOf(frame));
-  const PhotoPicture cut = near.Render(frame), whole = everywhere.Render(frame);
+  const PersonPicture cut = near.Render(frame), whole = everywhere.Render(frame);
   const PhotoWindow window = WindowAround(frame, 2, options.config.SmallestSide());
   ASSERT_LT(window.width, kToySize);
   for (int y = 0; y < kToySize; ++y) {
@@ -339,7 +339,7 @@ TEST(PhotoRenderer, ComputesOnlyWhatIsNearTheBody) {
     }
   }
   frame.parts.assign(frame.parts.size(), 0);
-  const PhotoPicture nobody = near.Render(frame);
+  const PersonPicture nobody = near.Render(frame);
   EXPECT_EQ(*std::max_element(nobody.alpha.begin(), nobody.alpha.end()), 0);
 }
 
@@ -354,7 +354,7 @@ TEST(PhotoTraining, DoesTheSameOnACard) {
   EXPECT_NEAR(there.scores.image_l1, here.scores.image_l1, 1e-3);
   PhotoFrame frame;
   source.fill(1, 0, &frame);
-  PhotoPicture pictures[2];
+  PersonPicture pictures[2];
   for (const char* device : {"cpu", "cuda"}) {
     PhotoRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, 1, device});
     renderer.Encode(PartialTextureOf(frame));

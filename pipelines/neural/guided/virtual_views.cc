@@ -1,49 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipelines/neural/guided/guided_people.h"
+#include "pipelines/neural/guided/virtual_views.h"
 
 #include <Eigen/Geometry>
-#include <filesystem>
-#include <string>
 
-#include "data_tools/body/builtin_body.h"
-#include "data_tools/datasets/multi_person_dataset.h"
-#include "data_tools/datasets/single_person_dataset.h"
 #include "data_tools/descriptors/photo_maps.h"
-#include "data_tools/motion/track_io.h"
 #include "neural/guided/complete_maps.h"
 #include "pipelines/neural/photo/photo_input.h"
 #include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
-
-namespace fs = std::filesystem;
-
-namespace {
-
-/// `track`: as GivenOfPeople has it.
-Eigen::VectorXd BetasOf(const std::string& clip, const std::string& track) {
-  return track.empty() ? SinglePersonDataset(clip).track().motion.betas
-                       : ReadTrack((fs::path(clip) / track).string()).motion.betas;
-}
-
-}  // namespace
-
-GuidedPeople::GuidedPeople(const PeopleDataRequest& request)
-    : request_(request), data_(request), body_(BodyOrBuiltin(request.body)) {
-  if (IsSinglePersonDataset(request.data)) {
-    betas_.push_back(BetasOf(request.data, request.given.track));
-    return;
-  }
-  const MultiPersonDataset set = ReadMultiPersonDataset(request.data);
-  for (const DatasetPerson& person : set.people) {
-    if (person.test != request.test) continue;
-    betas_.push_back(BetasOf((fs::path(set.path) / person.clips.front()).string(), request.given.track));
-  }
-}
-
-std::vector<PhotoFrame> GuidedPeople::VirtualViewsOf(int person) const {
-  return VirtualViews(*body_, betas_.at(person), request_.size, request_.texture_size);
-}
 
 Track VirtualViewTrack(const BodyModel& body, const Eigen::VectorXd& betas) {
   constexpr int kSide = 1024;

@@ -15,11 +15,8 @@
 #include "pipelines/animate/background.h"
 #include "pipelines/neural/animation.h"
 #include "pipelines/neural/photo/photo_input.h"
-#include "render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
-
-// Appearance of a person rendered from photos: the texture that they show, parts of it lent by somebody else.
 
 /// Somebody who lends a part of his or her appearance.
 struct LentGarment {
@@ -31,15 +28,10 @@ struct LentGarment {
 /// RequestError for other names.
 std::vector<int> PartsNamed(const std::vector<std::string>& names);
 
-/// U × U: 1 where `garment` replaces what the person wears by what `lender` does. Adds to `notes` a line that says how
-/// much of that the lender's photo shows. Throws std::runtime_error when it shows nothing of it.
-std::vector<uint8_t> LentTexels(const LentGarment& garment, const Photo& lender, std::span<const uint8_t> texel_parts,
-                                std::string* notes);
-
-/// The union of what the photos show; where somebody lends, the last of them shows what. Adds to `notes` and throws
-/// as LentTexels.
-PartialTexture AppearanceOf(std::span<const Photo> photos, const LentGarment& garment,
-                            std::span<const uint8_t> texel_parts, std::string* notes);
+/// Adds to `notes` a line that says how much of what `garment` lends the lender's photo shows. Throws
+/// std::runtime_error when it shows nothing of it.
+void NoteLent(const LentGarment& garment, const Photo& lender, std::span<const uint8_t> texel_parts,
+              std::string* notes);
 
 /// The body is the photo's; `body` is not looked at.
 struct PhotoAnimationRequest : AnimationRequest {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipelines/neural/photo/photo_animation.h"
+#include "pipelines/neural/person/photo_animation.h"
 
 #include <algorithm>
 #include <charconv>
@@ -14,6 +14,8 @@
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "pipelines/animate/animation_limits.h"
+#include "pipelines/neural/person/person_renderer.h"
+#include "render/texture/complete/partial_texture.h"
 
 namespace bodyloom {
 
@@ -101,28 +103,13 @@ std::vector<int> PartsNamed(const std::vector<std::string>& names) {
   return parts;
 }
 
-std::vector<uint8_t> LentTexels(const LentGarment& garment, const Photo& lender, std::span<const uint8_t> texel_parts,
-                                std::string* notes) {
-  const std::vector<int> parts = PartsNamed(garment.parts);
-  std::vector<uint8_t> of_garment(texel_parts.begin(), texel_parts.end());
-  for (uint8_t& part : of_garment) part = std::find(parts.begin(), parts.end(), int{part}) != parts.end() ? 1 : 0;
-  const double share = VisibleShare(PartialTextureOf(lender.frame), of_garment);
+void NoteLent(const LentGarment& garment, const Photo& lender, std::span<const uint8_t> texel_parts,
+              std::string* notes) {
+  const double share = VisibleShare(PartialTextureOf(lender.frame), TexelsOf(PartsNamed(garment.parts), texel_parts));
   if (!(share > 0)) {
     throw std::runtime_error("--garment-from " + garment.from + ": nothing of --parts is to be seen there");
   }
   *notes += Concatenate(garment.from, ": shows ", std::lround(100 * share), " % of --parts\n");
-  return of_garment;
-}
-
-PartialTexture AppearanceOf(std::span<const Photo> photos, const LentGarment& garment,
-                            std::span<const uint8_t> texel_parts, std::string* notes) {
-  std::vector<PartialTexture> textures;
-  for (const Photo& photo : photos) textures.push_back(PartialTextureOf(photo.frame));
-  if (garment.from.empty()) return UnionOf(textures);
-  const PartialTexture lent = std::move(textures.back());
-  textures.pop_back();
-  LentTexels(garment, photos.back(), texel_parts, notes);
-  return WithParts(UnionOf(textures), lent, texel_parts, PartsNamed(garment.parts));
 }
 
 }  // namespace bodyloom

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipelines/neural/guided/guided_scores.h"
+#include "pipelines/neural/person/scores_json.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "neural/metrics/lpips.h"
-
 namespace bodyloom {
 
-nlohmann::ordered_json ToJson(const GuidedScores& s) {
+nlohmann::ordered_json ToJson(const PersonScores& s) {
   nlohmann::ordered_json json = {
       {"frames", s.frames}, {"image_l1", s.image_l1}, {"psnr_db", s.psnr_db}, {"silhouette_iou", s.silhouette_iou}};
   if (!std::isnan(s.label_iou)) json["label_iou"] = s.label_iou;

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neural/metrics/person_scores.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "geometry/base/check.h"
+#include "render/texture/planar_image.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kContextualRandomFeaturesDivisor = 4;
+constexpr double kNotScored = std::numeric_limits<double>::quiet_NaN();
+
+bool ShowsPerson(const PhotoFrame& truth, size_t pixel) {
+  if (!truth.labels.empty()) return truth.labels[pixel] != 0;
+  const size_t pixels = truth.image.size() / 3;
+  return truth.image[pixel] > 0 || truth.image[pixels + pixel] > 0 || truth.image[2 * pixels + pixel] > 0;
+}
+
+}  // namespace
+
+PersonScoring LikenessScoring(const LikenessWeights& weights, PictureSimilarity ssim) {
+  const bool trained = !weights.vgg19.empty();
+  const auto contextual = std::make_shared<ContextualMetric>(trained ? 1 : kContextualRandomFeaturesDivisor);
+  if (trained) contextual->Load(weights.vgg19.weights, weights.vgg19.source);
+  return {std::make_shared<const Lpips>(LpipsFrom(weights.alexnet, weights.lpips_heads)), contextual, std::move(ssim)};
+}
+
+PersonScorer::PersonScorer(PersonScoring scoring) : scoring_(std::move(scoring)) {}
+
+void PersonScorer::Add(const PersonPicture& picture, const PhotoFrame& truth) {
+  const size_t pixels = static_cast<size_t>(truth.size) * truth.size;
+  const auto of_window = [&](size_t size) { return size == 0 || size == pixels; };
+  BODYLOOM_CHECK(picture.size == truth.size && picture.image.size() == 3 * pixels && picture.alpha.size() == pixels &&
+                     of_window(picture.labels.size()) && truth.image.size() == 3 * pixels &&
+                     of_window(truth.labels.size()),
+                 "scores: a picture of ", picture.size, " px beside a truth of ", truth.size);
+  ++frames_;
+  draws_labels_ = draws_labels_ && !picture.labels.empty() && !truth.labels.empty();
+  for (size_t i = 0; i < pixels; ++i) {
+    const bool shown = ShowsPerson(truth, i);
+    const size_t drawn = picture.labels.empty() ? (picture.alpha[i] >= 0.5F ? 1 : 0) : picture.labels[i];
+    overlap_.Add(drawn, truth.labels.empty() ? size_t{shown} : size_t{truth.labels[i]});
+    if (!shown) continue;
+    for (size_t c = 0; c < 3; ++c) {
+      const double error = double{picture.image[c * pixels + i]} - truth.image[c * pixels + i];
+      l1_ += std::abs(error);
+      squared_ += error * error;
+    }
+    values_ += 3;
+  }
+  if (scoring_.lpips || scoring_.contextual || scoring_.ssim) AddLikeness(picture, truth);
+}
+
+void PersonScorer::AddLikeness(const PersonPicture& picture, const PhotoFrame& truth) {
+  const int size = picture.size;
+  const Image image = PictureOf(picture.image, size, size), true_image = PictureOf(truth.image, size, size);
+  if (scoring_.ssim) ssim_ += scoring_.ssim(true_image, image);
+  if (scoring_.lpips) {
+    if (std::exchange(next_person_, false)) lpips_of_people_.emplace_back();
+    lpips_of_people_.back().push_back(scoring_.lpips->Distance(image, true_image).value);
+  }
+  if (!scoring_.contextual) return;
+  if (size > PersonScores::kLargestContextualPicture) {
+    contextual_ = kNotScored;
+    return;
+  }
+  const ContextualValue contextual = (*scoring_.contextual)(image, true_image);
+  contextual_ += contextual.distance;
+  contextual_random_features_ = contextual.random_features;
+}
+
+PersonScores PersonScorer::Scores() const {
+  PersonScores scores;
+  scores.frames = frames_;
+  if (frames_ == 0) return scores;
+  const double n = frames_, none = kNotScored;
+  const double mean_squared = values_ > 0 ? squared_ / values_ : none;
+  scores.image_l1 = values_ > 0 ? l1_ / values_ : none;
+  scores.psnr_db = values_ > 0 ? -10 * std::log10(std::max(1e-12, mean_squared)) : none;
+  scores.ssim = scoring_.ssim ? ssim_ / n : none;
+  const auto or_zero = [](double iou) { return std::isnan(iou) ? 0 : iou; };
+  scores.silhouette_iou = or_zero(overlap_.ForegroundIou());
+  scores.label_iou = draws_labels_ ? or_zero(overlap_.MeanIou(/*in_truth=*/true)) : none;
+  double sum = 0, around_means = 0;
+  for (const std::vector<double>& person : lpips_of_people_) {
+    const double of_person = std::accumulate(person.begin(), person.end(), 0.0);
+    const double mean = of_person / static_cast<double>(person.size());
+    sum += of_person;
+    for (const double distance : person) around_means += (distance - mean) * (distance - mean);
+  }
+  scores.lpips = scoring_.lpips ? sum / n : none;
+  scores.lpips_deviation = scoring_.lpips ? std::sqrt(around_means / n) : none;
+  scores.lpips_of_people = lpips_of_people_;
+  scores.lpips_random_features = !scoring_.lpips || scoring_.lpips->has_random_features();
+  scores.contextual_random_features = contextual_random_features_;
+  scores.contextual = scoring_.contextual ? contextual_ / n : none;
+  return scores;
+}
+
+}  // namespace bodyloom
