@@ -17,7 +17,6 @@ namespace {
 
 constexpr int kLevels = 2;
 constexpr int kQuadsPerCageQuad = 16;
-constexpr double kOpenMeshTolerance_m = 1e-6;
 
 /// The mirror image of each joint: l_ and r_ of a name exchanged.
 std::vector<int> MirrorOfJoints(const std::vector<std::string>& names) {
@@ -236,10 +235,6 @@ BodyModelData MakeBuiltinBody(const BuiltinBodySources& sources, MakeBuiltinBody
     summary->cage_quads = static_cast<int>(cage.quads.size());
     summary->vertices = static_cast<int>(body.v_template.rows());
     summary->quads = static_cast<int>(refined.quads.size());
-    summary->openmesh_agreement =
-        CompareByGeometry({body.v_template, refined.quads}, SubdivideByOpenMesh({cage.vertices, cage.quads}, kLevels),
-                          kOpenMeshTolerance_m);
-    summary->compared_with_openmesh = true;
   }
   return body;
 }

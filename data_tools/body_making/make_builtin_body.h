@@ -9,7 +9,6 @@
 
 #include <string>
 
-#include "data_tools/body_making/openmesh_catmull_clark.h"
 #include "geometry/body/body_model.h"
 
 namespace bodyloom {
@@ -25,11 +24,9 @@ BuiltinBodySources ReadBuiltinBodySources(const std::string& cage_path, const st
 
 struct MakeBuiltinBodySummary {
   int cage_vertices = 0, cage_quads = 0, vertices = 0, quads = 0;
-  bool compared_with_openmesh = false;
-  MeshAgreement openmesh_agreement;  ///< of v_template with OpenMesh's subdivision of the same cage
 };
 
-/// The body. With `summary` the subdivision is also compared with OpenMesh's. Deterministic: same files, same arrays.
+/// The body, and what it was made of in `summary`. Deterministic: same files, same arrays.
 /// Throws std::runtime_error naming file and array (or line) when a source is damaged or the two do not fit together.
 BodyModelData MakeBuiltinBody(const BuiltinBodySources& sources, MakeBuiltinBodySummary* summary = nullptr);
 

@@ -1,69 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/body_making/subdivision.h"
 
-#include <algorithm>
-#include <map>
-#include <unordered_map>
+#include <OpenMesh/Core/Mesh/PolyConnectivity.hh>
+#include <OpenMesh/Core/System/omstream.hh>
+#include <array>
 
 #include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {
 
-/// Undirected edges in order of first appearance, with the quads beside them.
-struct EdgeTable {
-  std::vector<Edge> edges;
-  std::vector<std::array<int, 2>> faces;  // −1: none yet
-  std::unordered_map<int64_t, int> index_of;
+using HalfEdges = OpenMesh::PolyConnectivity;
 
-  static int64_t Key(int a, int b) { return (static_cast<int64_t>(std::min(a, b)) << 32) | std::max(a, b); }
-
-  [[nodiscard]] int Find(int a, int b) const {
-    const auto it = index_of.find(Key(a, b));
-    return it == index_of.end() ? -1 : it->second;
-  }
-};
-
-EdgeTable BuildEdges(int num_vertices, const std::vector<Quad>& quads) {
-  EdgeTable table;
-  table.index_of.reserve(2 * quads.size());
+/// Edges are numbered in the order in which they are first met, faces as the quads.
+HalfEdges BuildHalfEdges(int num_vertices, const std::vector<Quad>& quads) {
+  static const bool quiet = (omerr().disable(), true);  // it prints what add_face() refuses
+  HalfEdges mesh;
+  for (int v = 0; quiet && v < num_vertices; ++v) mesh.add_vertex();
   for (size_t f = 0; f < quads.size(); ++f) {
+    std::array<OpenMesh::VertexHandle, 4> corners;
     for (int k = 0; k < 4; ++k) {
       const int a = quads[f][k], b = quads[f][(k + 1) % 4];
       BODYLOOM_CHECK(a >= 0 && a < num_vertices, "quad ", f, " names vertex ", a, ", expected 0..", num_vertices - 1);
-      const auto [it, is_new] = table.index_of.emplace(EdgeTable::Key(a, b), static_cast<int>(table.edges.size()));
-      if (is_new) {
-        table.edges.push_back({a, b});
-        table.faces.push_back({static_cast<int>(f), -1});
-        continue;
-      }
-      std::array<int, 2>& faces = table.faces[it->second];
-      BODYLOOM_CHECK(faces[1] < 0 && table.edges[it->second][0] == b, "edge ", a, "-", b, " of quad ", f,
-                     " is shared by more than two quads or runs the same way in both");
-      faces[1] = static_cast<int>(f);
+      BODYLOOM_CHECK(a != b && a != quads[f][(k + 2) % 4], "quad ", f, " names vertex ", a, " twice");
+      corners[k] = OpenMesh::VertexHandle(a);
     }
+    BODYLOOM_CHECK(mesh.add_face(corners.data(), 4).is_valid(), "quad ", f,
+                   " closes no fan of an oriented manifold: an edge of it is shared by more than two quads or runs the "
+                   "same way in both, or quads meet in a vertex alone");
   }
-  for (size_t e = 0; e < table.edges.size(); ++e) {
-    BODYLOOM_CHECK(table.faces[e][1] >= 0, "edge ", table.edges[e][0], "-", table.edges[e][1],
+  for (const auto h : mesh.halfedges()) {
+    BODYLOOM_CHECK(!mesh.is_boundary(h), "edge ", mesh.from_vertex_handle(h).idx(), "-", mesh.to_vertex_handle(h).idx(),
                    " has one quad, expected a closed mesh");
   }
-  return table;
+  return mesh;
+}
+
+int FindEdge(const HalfEdges& mesh, int a, int b) {
+  const auto half_edge = mesh.find_halfedge(OpenMesh::VertexHandle(a), OpenMesh::VertexHandle(b));
+  return half_edge.is_valid() ? mesh.edge_handle(half_edge).idx() : -1;
 }
 
 }  // namespace
 
 SubdivisionLevel SubdivideCatmullClark(int num_vertices, const std::vector<Quad>& quads) {
-  const EdgeTable table = BuildEdges(num_vertices, quads);
+  const HalfEdges mesh = BuildHalfEdges(num_vertices, quads);
   const int V = num_vertices;
   const int F = static_cast<int>(quads.size());
-  const int E = static_cast<int>(table.edges.size());
-  std::vector<int> valence(V, 0);
-  for (const Edge& edge : table.edges) {
-    ++valence[edge[0]];
-    ++valence[edge[1]];
+  const int E = static_cast<int>(mesh.n_edges());
+  SubdivisionLevel level;
+  for (const auto edge : mesh.edges()) {
+    const auto along = mesh.halfedge_handle(edge, 0);  // as the quad runs that met it first
+    level.edges.push_back({mesh.from_vertex_handle(along).idx(), mesh.to_vertex_handle(along).idx()});
   }
-  for (int v = 0; v < V; ++v)
+  std::vector<int> valence(V);
+  for (int v = 0; v < V; ++v) {
+    valence[v] = static_cast<int>(mesh.valence(OpenMesh::VertexHandle(v)));
     BODYLOOM_CHECK(valence[v] >= 3, "vertex ", v, " has ", valence[v], " edges, expected 3 or more");
+  }
 
   using Triplet = Eigen::Triplet<double>;
   std::vector<Triplet> entries;  // repeated (row, column) pairs are summed
@@ -77,25 +71,25 @@ SubdivisionLevel SubdivideCatmullClark(int num_vertices, const std::vector<Quad>
     }
   }
   for (int e = 0; e < E; ++e) {
-    for (int end : table.edges[e]) {
+    for (int end : level.edges[e]) {
       const double midpoint_share = 2.0 / (static_cast<double>(valence[end]) * valence[end]);
-      for (int other : table.edges[e]) entries.emplace_back(end, other, 0.5 * midpoint_share);
+      for (int other : level.edges[e]) entries.emplace_back(end, other, 0.5 * midpoint_share);
       entries.emplace_back(V + F + e, end, 0.25);
     }
-    for (int f : table.faces[e]) {
+    for (int side = 0; side < 2; ++side) {
+      const int f = mesh.face_handle(mesh.halfedge_handle(OpenMesh::EdgeHandle(e), side)).idx();
       for (int corner : quads[f]) entries.emplace_back(V + F + e, corner, 0.25 * 0.25);
     }
   }
 
-  SubdivisionLevel level;
-  level.edges = table.edges;
   level.fine_from_coarse.resize(V + F + E, V);
   level.fine_from_coarse.setFromTriplets(entries.begin(), entries.end());
   level.quads.reserve(4 * F);
   for (int f = 0; f < F; ++f) {
     for (int k = 0; k < 4; ++k) {
       const int corner = quads[f][k], next = quads[f][(k + 1) % 4], previous = quads[f][(k + 3) % 4];
-      level.quads.push_back({corner, V + F + table.Find(corner, next), V + f, V + F + table.Find(previous, corner)});
+      level.quads.push_back(
+          {corner, V + F + FindEdge(mesh, corner, next), V + f, V + F + FindEdge(mesh, previous, corner)});
     }
   }
   return level;
@@ -107,30 +101,25 @@ std::vector<int> MirrorOfSubdivision(const std::vector<int>& coarse_mirror, cons
   const int F = static_cast<int>(coarse_quads.size());
   BODYLOOM_CHECK(level.fine_from_coarse.cols() == V, "mirror map of ", V, " vertices, the level refines ",
                  level.fine_from_coarse.cols());
-  std::map<Quad, int> face_of_corners;
-  for (int f = 0; f < F; ++f) {
-    Quad corners = coarse_quads[f];
-    std::sort(corners.begin(), corners.end());
-    face_of_corners[corners] = f;
-  }
-  std::unordered_map<int64_t, int> edge_of_ends;
-  for (size_t e = 0; e < level.edges.size(); ++e) {
-    edge_of_ends[EdgeTable::Key(level.edges[e][0], level.edges[e][1])] = static_cast<int>(e);
-  }
+  const HalfEdges mesh = BuildHalfEdges(V, coarse_quads);
+  for (const int image : coarse_mirror)
+    BODYLOOM_CHECK(image >= 0 && image < V, "vertex ", image, " is no mirror image");
   std::vector<int> mirror = coarse_mirror;
   for (int f = 0; f < F; ++f) {
-    Quad corners;
-    for (int k = 0; k < 4; ++k) corners[k] = coarse_mirror[coarse_quads[f][k]];
-    std::sort(corners.begin(), corners.end());
-    const auto found = face_of_corners.find(corners);
-    BODYLOOM_CHECK(found != face_of_corners.end(), "quad ", f, " has no mirror image");
-    mirror.push_back(V + found->second);
+    Quad image;  // a reflection turns the quad round
+    for (int k = 0; k < 4; ++k) image[k] = coarse_mirror[coarse_quads[f][3 - k]];
+    const auto side = mesh.find_halfedge(OpenMesh::VertexHandle(image[0]), OpenMesh::VertexHandle(image[1]));
+    BODYLOOM_CHECK(side.is_valid(), "quad ", f, " has no mirror image");
+    auto along = static_cast<OpenMesh::HalfedgeHandle>(side);
+    for (int k = 0; k < 4; ++k, along = mesh.next_halfedge_handle(along)) {
+      BODYLOOM_CHECK(mesh.from_vertex_handle(along).idx() == image[k], "quad ", f, " has no mirror image");
+    }
+    mirror.push_back(V + mesh.face_handle(side).idx());
   }
   for (size_t e = 0; e < level.edges.size(); ++e) {
-    const auto found =
-        edge_of_ends.find(EdgeTable::Key(coarse_mirror[level.edges[e][0]], coarse_mirror[level.edges[e][1]]));
-    BODYLOOM_CHECK(found != edge_of_ends.end(), "edge ", e, " has no mirror image");
-    mirror.push_back(V + F + found->second);
+    const int image = FindEdge(mesh, coarse_mirror[level.edges[e][0]], coarse_mirror[level.edges[e][1]]);
+    BODYLOOM_CHECK(image >= 0, "edge ", e, " has no mirror image");
+    mirror.push_back(V + F + image);
   }
   return mirror;
 }

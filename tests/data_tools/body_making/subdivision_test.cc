@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <set>
 
-#include "data_tools/body_making/openmesh_catmull_clark.h"
+#include "tests/data_tools/body_making/openmesh_catmull_clark.h"
 
 namespace bodyloom::subdivision_test {
 namespace {
@@ -149,6 +150,24 @@ TEST(Subdivision, MirrorMapRefusesAsymmetricMesh) {
   const SubdivisionLevel level = SubdivideCatmullClark(8, cube.quads);
   EXPECT_THROW(MirrorOfSubdivision({1, 0, 3, 2, 5, 4, 6, 7}, cube.quads, level), std::invalid_argument);
   EXPECT_THROW(MirrorOfSubdivision({1, 0, 3, 2}, cube.quads, level), std::invalid_argument);
+}
+
+/// Two cubes that touch in a corner: the two fans of that vertex are no manifold.
+TEST(Subdivision, RefusesQuadsThatMeetInAVertexAlone) {
+  const QuadMesh cube = Cube();
+  std::vector<Quad> quads = cube.quads;
+  for (Quad quad : cube.quads) {
+    for (int& v : quad) v = v == 0 ? 7 : v + 8;
+    quads.push_back(quad);
+  }
+  // Vertex 8 would be in no quad: close the gap.
+  for (Quad& quad : quads) {
+    for (int& v : quad) v -= v > 8 ? 1 : 0;
+  }
+  for (int order = 0; order < 3; ++order) {
+    EXPECT_THROW(SubdivideCatmullClark(15, quads), std::invalid_argument) << "order " << order;
+    std::shuffle(quads.begin(), quads.end(), std::mt19937(order));
+  }
 }
 
 TEST(Subdivision, RefusesMeshesThatAreNotClosed) {

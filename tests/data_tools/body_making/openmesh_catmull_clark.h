@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// OpenMesh's Catmull–Clark subdivider as an independent twin of subdivision.h, and the comparison of the two by
-/// geometry (OpenMesh numbers vertices and faces in an order of its own).
+/// OpenMesh's Catmull–Clark subdivider as an independent judge of data_tools/body_making/subdivision.h, and the
+/// comparison of the two by geometry (OpenMesh numbers vertices and faces in an order of its own).
 #pragma once
 
 #include <string>
