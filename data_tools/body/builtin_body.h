@@ -9,16 +9,12 @@
 #include <memory>
 #include <string>
 
-#include "data_tools/body_making/make_builtin_body.h"
 #include "geometry/body/body_model.h"
 
 namespace bodyloom {
 
 /// The body, built once from the copy inside the library; thread-safe.
 const BodyModel& BuiltinBody();
-
-/// The sources compiled into the library.
-BuiltinBodySources EmbeddedBuiltinBodySources();
 
 /// The body in a file (data_tools/body/body_io.h), or the built-in one for an empty path. Throws std::runtime_error
 /// naming the file and what is wrong with it.

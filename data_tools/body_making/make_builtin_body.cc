@@ -12,6 +12,12 @@
 #include "data_tools/formats/printable.h"
 #include "geometry/base/check.h"
 
+// Made by bodyloom_embed() in data_tools/CMakeLists.txt.
+extern "C" {
+extern const char bodyloom_builtin_body_cage_begin[], bodyloom_builtin_body_cage_end[];
+extern const char bodyloom_builtin_body_parts_begin[], bodyloom_builtin_body_parts_end[];
+}
+
 namespace bodyloom {
 namespace {
 
@@ -191,6 +197,13 @@ void FillCharts(const Cage& cage, const RefinedCage& refined, const LeftHalfArra
 }
 
 }  // namespace
+
+BuiltinBodySources EmbeddedBuiltinBodySources() {
+  BuiltinBodySources sources;
+  sources.cage_text.assign(bodyloom_builtin_body_cage_begin, bodyloom_builtin_body_cage_end);
+  sources.parts_bytes.assign(bodyloom_builtin_body_parts_begin, bodyloom_builtin_body_parts_end);
+  return sources;
+}
 
 BuiltinBodySources ReadBuiltinBodySources(const std::string& cage_path, const std::string& parts_path) {
   return {ReadFileBytes(cage_path), cage_path, ReadFileBytes(parts_path), parts_path};

@@ -19,6 +19,9 @@ struct BuiltinBodySources {
   std::string parts_bytes, parts_name = "builtin_body.npz";
 };
 
+/// The sources compiled into the library.
+BuiltinBodySources EmbeddedBuiltinBodySources();
+
 /// Reads the two files. Throws std::runtime_error naming the path.
 BuiltinBodySources ReadBuiltinBodySources(const std::string& cage_path, const std::string& parts_path);
 

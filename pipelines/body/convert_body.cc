@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "data_tools/body/body_io.h"
-#include "data_tools/body/builtin_body.h"
 #include "pipelines/files.h"
 
 namespace bodyloom {

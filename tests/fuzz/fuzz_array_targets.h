@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "data_tools/avatar/avatar_file.h"
-#include "data_tools/body/builtin_body.h"
+#include "data_tools/body_making/make_builtin_body.h"
 #include "data_tools/estimates/hmr_readers.h"
 #include "data_tools/estimates/load_estimate.h"
 #include "data_tools/formats/zip.h"

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "data_tools/body_making/cage.h"
+#include "data_tools/body_making/make_builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
 #include "data_tools/formats/printable.h"

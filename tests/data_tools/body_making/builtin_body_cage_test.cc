@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "data_tools/body/builtin_body.h"
+#include "data_tools/body_making/make_builtin_body.h"
 #include "data_tools/formats/printable.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "data_tools/body_making/cage.h"
+#include "data_tools/body_making/make_builtin_body.h"
 #include "data_tools/formats/npz.h"
 #include "tests/data_tools/body_making/openmesh_catmull_clark.h"
 #include "tests/data_tools/body_making/recipe_support.h"

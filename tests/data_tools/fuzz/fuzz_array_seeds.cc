@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "data_tools/avatar/avatar_file.h"
-#include "data_tools/body/builtin_body.h"
+#include "data_tools/body_making/make_builtin_body.h"
 #include "data_tools/datasets/single_person_dataset.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/inflate.h"
