@@ -34,7 +34,7 @@ void Make(const BuildBuiltinBodyRequest& request) {
 
 }  // namespace
 
-void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& command, FindCrossingFaces crossing) {
+void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& command, SurfaceTools tools) {
   CLI::App* verb = app.add_subcommand("body", "Describes, converts and makes body models");
   verb->require_subcommand(1);
   verb->footer(kExitCodeHelp);
@@ -42,7 +42,7 @@ void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& 
   ConvertBodyRequest& to_convert = arguments->convert;
   BuildBuiltinBodyRequest& to_make = arguments->make;
 
-  AddBodyInfo(*verb, action, command, std::move(crossing));
+  AddBodyInfo(*verb, action, command, std::move(tools));
   CLI::App* convert = verb->add_subcommand("convert", "Turns any readable body into one compact file");
   convert->add_option("--body", to_convert.body, "SMPL, SMPL-H or SMPL-X .pkl or .npz")->required()->type_name("FILE");
   convert->add_option("--out", to_convert.out, "the compact body, .npz")->required()->type_name("FILE");

@@ -22,8 +22,8 @@ constexpr const char* kInfoFooter =
     "--check looks for what keeps the mesh from being the closed, outward surface of a solid: holes, edges of more "
     "than\n"
     "two faces, faces that face the wrong way, doubled or empty faces, doubled or unused vertices, loose components;\n"
-    "and, where bodyloom-cgal was built, faces that cross each other. It prints a line a finding, or \"nothing "
-    "found\",\n"
+    "and, where bodyloom-cgal lies beside bodyloom, faces that cross each other. It prints a line a finding, or\n"
+    "\"nothing found\",\n"
     "and exits with 1 when something was found (with --repair: when something is left).\n"
     "Examples:\n"
     "  bodyloom body info SMPL_NEUTRAL.pkl\n"
@@ -38,7 +38,7 @@ struct InfoArguments {
 void Info(const InfoArguments& arguments, const std::vector<std::string>& command) {
   const CheckBodyRequest& request = arguments.request;
   RequireReadable(request.body, "body model");
-  if (arguments.check && !request.crossing) ExecBeside("bodyloom-cgal", command);
+  if (arguments.check && !request.surface_tools.crossing) ExecBeside("bodyloom-cgal", command);
   std::cout << DescribeBody(*BodyOrBuiltin(request.body));
   if (!arguments.check) return;
   const CheckBodyReport report = CheckBody(request, CommandCallbacks(arguments.quiet));
@@ -50,10 +50,10 @@ void Info(const InfoArguments& arguments, const std::vector<std::string>& comman
 
 }  // namespace
 
-void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>& command, FindCrossingFaces crossing) {
+void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>& command, SurfaceTools tools) {
   auto arguments = std::make_shared<InfoArguments>();
   CheckBodyRequest& to_check = arguments->request;
-  to_check.crossing = std::move(crossing);
+  to_check.surface_tools = std::move(tools);
   CLI::App* info = verb.add_subcommand("info", "Prints what a body file holds and what it lacks");
   info->add_option("--body,body", to_check.body, "body model (default: the built-in body)")->type_name("FILE");
   CLI::Option* check = info->add_flag("--check", arguments->check, "look for faults of its mesh (below)");
@@ -62,9 +62,14 @@ void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>&
   info->add_option("--frames", to_check.frames, "only frames a to b-1; one number: that frame (default: all)")
       ->type_name("a:b")
       ->needs(track);
-  info->add_option("--repair", to_check.repair, "write the body with what can be mended mended, .npz")
-      ->type_name("FILE")
-      ->needs(check);
+  CLI::Option* repair =
+      info->add_option("--repair", to_check.repair, "write the body with what can be mended mended, .npz");
+  repair->type_name("FILE")->needs(check);
+  info->add_option("--max-hole", to_check.max_hole_edges, "--repair fills holes of at most so many edges (0: none)")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("EDGES")
+      ->needs(repair)
+      ->capture_default_str();
   info->add_option("--same-place", to_check.same_place_mm, "vertices no further apart are one place")
       ->check(CLI::Range(0.0, 100.0))
       ->type_name("MM")

@@ -43,12 +43,11 @@ void AddRenderVerb(CLI::App& app, Action* action);
 void AddDescribeVerb(CLI::App& app, Action* action);
 void AddTextureVerb(CLI::App& app, Action* action);
 void AddParseVerb(CLI::App& app, Action* action);
-/// `crossing` finds the faces of a body that cross each other; without it `info --check` goes on in the executable that
-/// has it, where there is one, which takes `arguments`, those of this one.
-void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& arguments,
-                 FindCrossingFaces crossing = {});
+/// `tools` find the faces of a body that cross each other and close its holes; without them `info --check` goes on in
+/// the executable that has them, where there is one, which takes `arguments`, those of this one.
+void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& arguments, SurfaceTools tools = {});
 /// `body info`, of the verb `body`.
-void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>& arguments, FindCrossingFaces crossing);
+void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>& arguments, SurfaceTools tools);
 void AddDemoVerb(CLI::App& app, Action* action);
 void AddPriorVerb(CLI::App& app, Action* action);
 void AddMotionsVerb(CLI::App& app, Action* action);

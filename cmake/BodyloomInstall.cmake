@@ -2,6 +2,7 @@
 #   component     what
 #   command       bin/bodyloom, and share/bodyloom/models where ./dev models fetched them
 #   neural        bin/bodyloom-neural
+#   cgal          bin/bodyloom-cgal (GPL as a whole: apps/cgal/copyright)
 #   python        lib/python3/dist-packages/bodyloom (python/CMakeLists.txt)
 #   development   the libraries, include/bodyloom, lib/cmake/bodyloom
 include(CMakePackageConfigHelpers)
@@ -42,16 +43,20 @@ install(CODE "
   set(without ${without})
   include(\"${CMAKE_CURRENT_LIST_DIR}/InstallPublicHeaders.cmake\")" COMPONENT development)
 
-foreach(component command neural)
+foreach(component command neural cgal)
   set(target bodyloom_command)
   set(folder bodyloom)
-  if(component STREQUAL neural)
-    set(target bodyloom_neural_command)
-    set(folder bodyloom-neural)
+  set(copyright ${PROJECT_SOURCE_DIR}/LICENSE)
+  if(NOT component STREQUAL command)
+    set(target bodyloom_${component}_command)
+    set(folder bodyloom-${component})
+  endif()
+  if(component STREQUAL cgal)
+    set(copyright ${PROJECT_SOURCE_DIR}/apps/cgal/copyright)
   endif()
   if(TARGET ${target})
     install(TARGETS ${target} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
-    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
+    install(FILES ${copyright} RENAME copyright
             DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${folder} COMPONENT ${component})
   endif()
 endforeach()

@@ -1,6 +1,7 @@
 # `cpack` (./dev package): Debian packages.
 #   bodyloom         the command without the verbs that need LibTorch
 #   bodyloom-neural  those verbs
+#   bodyloom-cgal    what `bodyloom body info --check` does by CGAL (GPL)
 #   python3-bodyloom the Python module
 #   libbodyloom-dev  the libraries and their headers
 # What the programs need of Debian is read off their shared libraries (dpkg-shlibdeps, from dpkg-dev).
@@ -21,9 +22,10 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_VERBATIM_VARIABLES ON)
 
 set(CPACK_COMPONENTS_ALL development)
-foreach(component command neural python)
+foreach(component command neural cgal python)
   if((component STREQUAL command AND TARGET bodyloom_command) OR
      (component STREQUAL neural AND TARGET bodyloom_neural_command) OR
+     (component STREQUAL cgal AND TARGET bodyloom_cgal_command) OR
      (component STREQUAL python AND TARGET bodyloom_python))
     list(APPEND CPACK_COMPONENTS_ALL ${component})
   endif()
@@ -31,13 +33,18 @@ endforeach()
 
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME bodyloom)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS bodyloom-neural)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "bodyloom-neural, bodyloom-cgal")
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "Follows a person through a single-camera video with a parametric body.")
 
 set(CPACK_DEBIAN_NEURAL_PACKAGE_NAME bodyloom-neural)
 set(CPACK_DEBIAN_NEURAL_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_NEURAL_PACKAGE_DEPENDS "bodyloom (= ${PROJECT_VERSION})")
 set(CPACK_COMPONENT_NEURAL_DESCRIPTION "Verbs of the bodyloom command that train and run neural renderers (LibTorch).")
+
+set(CPACK_DEBIAN_CGAL_PACKAGE_NAME bodyloom-cgal)
+set(CPACK_DEBIAN_CGAL_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_CGAL_PACKAGE_DEPENDS "bodyloom (= ${PROJECT_VERSION})")
+set(CPACK_COMPONENT_CGAL_DESCRIPTION "Crossing faces and holes of body meshes, for bodyloom body info --check (CGAL, GPL).")
 
 # The module is of one version of Python, whose name its file bears.
 if(TARGET bodyloom_python)

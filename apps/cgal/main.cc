@@ -2,7 +2,7 @@
 // The command `bodyloom-cgal`: what needs CGAL, whose mesh packages are GPL. `bodyloom body info --check` starts it.
 #include <CLI/CLI.hpp>
 
-#include "apps/cgal/crossing_faces.h"
+#include "apps/cgal/surface_tools.h"
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
@@ -12,6 +12,6 @@ int main(int argc, char** argv) {
   CLI::App app("What bodyloom does with CGAL.", "bodyloom");
   app.require_subcommand(1);
   bodyloom::Action action;
-  bodyloom::AddBodyVerb(app, &action, {}, bodyloom::CrossingFaces);
+  bodyloom::AddBodyVerb(app, &action, {}, {bodyloom::CrossingFaces, bodyloom::HoleFaces});
   return bodyloom::RunParsed(&app, "bodyloom", argc, argv, action);
 }

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "data_tools/body/append_faces.h"
 #include "data_tools/body/body_landmarks.h"
 #include "geometry/mesh/mesh_check.h"
 
@@ -196,6 +197,13 @@ RepairBodySummary RepairBody(const RepairBodyOptions& options, BodyModelData* bo
   const std::vector<int> turned = found().turned_faces;
   summary.turned_faces = static_cast<int>(turned.size());
   for (const int f : turned) TurnFace(f, body);
+  const CheckMeshResult before = found();
+  if (!options.hole_faces || before.boundary_edges == 0) return summary;
+  const MatrixX3i added = options.hole_faces(body->v_template, body->faces, options.max_hole_edges);
+  AppendFaces(added, body);
+  const CheckMeshResult after = found();
+  summary.added_faces = static_cast<int>(added.rows());
+  summary.filled_holes = static_cast<int>(before.boundary_loops.size() - after.boundary_loops.size());
   return summary;
 }
 

@@ -133,7 +133,7 @@ class Crossings {
 std::vector<BodyFinding> CrossingsOf(const BodyModel& body, const CheckBodyRequest& request, CheckBodyReport* report,
                                      const PipelineCallbacks& callbacks) {
   std::vector<BodyFinding> findings;
-  const Crossings crossings(body.data(), request.crossing);
+  const Crossings crossings(body.data(), request.surface_tools.crossing);
   const std::vector<std::array<int, 2>> at_rest = crossings.In(body.data().v_template);
   if (!at_rest.empty()) {
     findings.push_back({"pairs of faces that cross at rest", static_cast<int>(at_rest.size()),
@@ -191,6 +191,7 @@ std::string RepairText(const RepairBodySummary& repair) {
   add(repair.dropped_faces, "faces dropped");
   add(repair.merged_vertices, "vertices merged");
   add(repair.dropped_vertices, "vertices dropped");
+  add(repair.filled_holes, "holes filled");
   text += repair.changed() ? "\n" : "nothing\n";
   if (repair.largest_merge_m > 0) {
     text += "merged vertices lay up to " + Fixed(repair.largest_merge_m * kMmPerMetre, 3) + " mm apart\n";
@@ -213,9 +214,11 @@ std::string RepairText(const RepairBodySummary& repair) {
 }  // namespace
 
 CheckBodyReport CheckBody(const CheckBodyRequest& request, const PipelineCallbacks& callbacks) {
-  if (!request.track.empty() && !request.crossing) {
+  const SurfaceTools& tools = request.surface_tools;
+  if (!request.track.empty() && !tools.crossing) {
     throw RequestError(
-        "--track: crossing faces are found by bodyloom-cgal, which was not built (docs/your_own_body.md)");
+        "--track: crossing faces are found by bodyloom-cgal, which is not beside bodyloom "
+        "(docs/your_own_body.md)");
   }
   RequireReadable(request.body, "body model");
   RequireReadable(request.track, "track");
@@ -232,14 +235,17 @@ CheckBodyReport CheckBody(const CheckBodyRequest& request, const PipelineCallbac
     BodyModelData data = body->data();
     RepairBodyOptions repair;
     repair.same_place_m = options.same_place_m;
+    repair.hole_faces = tools.hole_faces;
+    repair.max_hole_edges = request.max_hole_edges;
     report.repair = RepairBody(repair, &data);
     report.repaired = true;
     report.out = request.repair;
     body = std::make_shared<const BodyModel>(std::move(data));
     report.left = FindingsOf(CheckMesh(body->data().v_template, body->data().faces, options));
   }
-  report.crossing_checked = static_cast<bool>(request.crossing);
-  if (request.crossing) {
+  report.crossing_checked = static_cast<bool>(tools.crossing);
+  report.could_fill_holes = static_cast<bool>(tools.hole_faces);
+  if (tools.crossing) {
     callbacks.Begin("looking for crossing faces");
     std::vector<BodyFinding>& findings = report.repaired ? report.left : report.findings;
     const std::vector<BodyFinding> crossings = CrossingsOf(*body, request, &report, callbacks);
@@ -257,7 +263,9 @@ std::string ToText(const CheckBodyReport& report) {
     text += report.left.empty() ? "nothing left\n" : "left:\n" + TableOf(report.left);
     text += "wrote " + report.out + "\n";
   }
-  text += !report.crossing_checked ? "crossing faces: not looked for (bodyloom-cgal was not built)\n"
+  const char* holes = report.repaired && !report.could_fill_holes ? "; holes: not filled" : "";
+  text += !report.crossing_checked
+              ? Concatenate("crossing faces: not looked for", holes, " (bodyloom-cgal is not beside bodyloom)\n")
           : report.poses_checked > 0
               ? Concatenate("crossing faces: looked for at rest and in ", report.poses_checked, " poses\n")
               : "crossing faces: looked for at rest\n";

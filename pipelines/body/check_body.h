@@ -18,12 +18,19 @@ namespace bodyloom {
 using FindCrossingFaces =
     std::function<std::vector<std::array<int, 2>>(const MatrixX3d& vertices, const MatrixX3i& faces)>;
 
+/// What the libraries do not know of surfaces, and a program that is linked with CGAL does. Empty: not done.
+struct SurfaceTools {
+  FindCrossingFaces crossing;
+  FindHoleFaces hole_faces;
+};
+
 struct CheckBodyRequest {
-  std::string body;            ///< empty: the built-in body
-  std::string track, frames;   ///< poses to look for crossing faces in (FrameRange); empty: none, all frames
-  std::string repair;          ///< the mended body, compact .npz; empty: not written
-  double same_place_mm = 0;    ///< vertices no further apart are one place
-  FindCrossingFaces crossing;  ///< empty: crossing faces are not looked for
+  std::string body;           ///< empty: the built-in body
+  std::string track, frames;  ///< poses to look for crossing faces in (FrameRange); empty: none, all frames
+  std::string repair;         ///< the mended body, compact .npz; empty: not written
+  double same_place_mm = 0;   ///< vertices no further apart are one place
+  int max_hole_edges = 100;   ///< of holes that `repair` fills
+  SurfaceTools surface_tools;
 };
 
 /// One kind of fault.
@@ -37,6 +44,7 @@ struct CheckBodyReport {
   std::string description;  ///< the mesh in a line
   std::vector<BodyFinding> findings;
   bool crossing_checked = false;  ///< whether crossing faces were looked for
+  bool could_fill_holes = false;  ///< whether there was what fills holes
   int poses_checked = 0;
   bool repaired = false;
   RepairBodySummary repair;
@@ -48,7 +56,7 @@ struct CheckBodyReport {
 };
 
 /// Crossing faces are looked for in the mended body where there is one. Throws RequestError for a track without
-/// `crossing`, or a file both read and written; std::runtime_error naming a file that cannot be used; Cancelled.
+/// what finds them, or a file both read and written; std::runtime_error naming a file that cannot be used; Cancelled.
 CheckBodyReport CheckBody(const CheckBodyRequest& request, const PipelineCallbacks& callbacks = {});
 
 /// A line a finding, or "nothing found"; then what was mended and what is left.

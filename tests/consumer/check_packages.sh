@@ -26,10 +26,10 @@ check_depends() {  # FILE
 
 rm -rf "$root"
 mkdir -p "$root"
-for package in bodyloom bodyloom-neural python3-bodyloom libbodyloom-dev; do
+for package in bodyloom bodyloom-neural bodyloom-cgal python3-bodyloom libbodyloom-dev; do
   file=$packages/${package}_${version}_$architecture.deb
   if [ ! -f "$file" ]; then
-    [[ $package =~ ^(bodyloom-neural|python3-bodyloom)$ ]] || fail "$file was not made"
+    [[ $package =~ ^(bodyloom-neural|bodyloom-cgal|python3-bodyloom)$ ]] || fail "$file was not made"
     continue
   fi
   check_depends "$file"
@@ -45,6 +45,11 @@ if [ -x "$root/usr/bin/bodyloom-neural" ]; then
   dpkg-deb --field "$packages/bodyloom-neural_${version}_$architecture.deb" Depends | grep -q libtorch ||
     fail "bodyloom-neural does not depend on LibTorch"
   "$root/usr/bin/bodyloom" train --help >/dev/null || fail "bodyloom does not find bodyloom-neural beside it"
+fi
+if [ -x "$root/usr/bin/bodyloom-cgal" ]; then
+  grep -q 'General Public License' "$root/usr/share/doc/bodyloom-cgal/copyright" || fail "bodyloom-cgal hides its licence"
+  "$root/usr/bin/bodyloom" body info --check --quiet | grep -q 'crossing faces: looked for' ||
+    fail "bodyloom does not find bodyloom-cgal beside it"
 fi
 if objdump -p "$root/usr/bin/bodyloom" | grep -E 'R(UN)?PATH'; then
   fail "bodyloom looks for libraries in a folder of the machine it was built on"

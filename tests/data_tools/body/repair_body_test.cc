@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "data_tools/body/builtin_body.h"
@@ -197,7 +200,9 @@ TEST(RepairBody, MergesWithinATolerance) {
   BodyModelData exactly = body;
   EXPECT_EQ(RepairBody({}, &exactly).merged_vertices, 0);
   EXPECT_EQ(Check(exactly).boundary_loops.size(), 1u);
-  const RepairBodySummary summary = RepairBody({.same_place_m = 5e-5}, &body);
+  RepairBodyOptions options;
+  options.same_place_m = 5e-5;
+  const RepairBodySummary summary = RepairBody(options, &body);
   EXPECT_EQ(summary.merged_vertices, 1);
   EXPECT_NEAR(summary.largest_merge_m, 2e-5, 1e-9);
   EXPECT_TRUE(Check(body).IsClean());
@@ -224,6 +229,86 @@ TEST(RepairBody, VerticesOfAKnownTopologyKeepTheirNumbers) {
   EXPECT_EQ(summary.merged_vertices + summary.dropped_vertices, 0);
   EXPECT_EQ(summary.vertices_numbered_elsewhere, 2 * (10475 - BuiltinBody().num_vertices()));
   EXPECT_EQ(summary.turned_faces, 1);
+}
+
+/// The body without face f, and with it appended again: what a hole of one face is filled with.
+BodyModelData WithFaceFilled(int f, BodyModelData body) {
+  const Eigen::RowVector3i corners = body.faces.row(f);
+  const auto cut = [f](auto& rows) {
+    const Eigen::Index n = rows.rows() - 1;
+    if (n < 0) return;
+    rows.middleRows(f, n - f) = rows.bottomRows(n - f).eval();
+    rows.conservativeResize(n, rows.cols());
+  };
+  cut(body.faces), cut(body.ft), cut(body.face_iuv);
+  body.face_part.erase(body.face_part.begin() + f);
+  const MatrixX3i open = body.faces;
+  RepairBodyOptions options;
+  options.max_hole_edges = 17;
+  options.hole_faces = [&](const MatrixX3d&, const MatrixX3i& faces, int max_edges) {
+    EXPECT_EQ(faces, open);
+    EXPECT_EQ(max_edges, 17);
+    return MatrixX3i(corners);
+  };
+  const RepairBodySummary summary = RepairBody(options, &body);
+  EXPECT_EQ(summary.filled_holes, 1);
+  EXPECT_EQ(summary.added_faces, 1);
+  EXPECT_TRUE(summary.changed());
+  EXPECT_FALSE(summary.renumbered_vertices());
+  return body;
+}
+
+/// Inside a chart the new face has the coordinates of the one that was there; beside a seam it spans no two charts.
+TEST(RepairBody, AFilledHoleHasTheChartsOfTheFacesBeside) {
+  const BodyModelData& whole = BuiltinBody().data();
+  const Eigen::Index last = whole.faces.rows() - 1;
+  std::map<int, std::set<int>> parts_of;  // by UV vertex
+  std::map<std::pair<int, int>, std::vector<int>> faces_of;
+  for (int f = 0; f <= last; ++f) {
+    for (int k = 0; k < 3; ++k) {
+      parts_of[whole.ft(f, k)].insert(whole.face_part[f]);
+      faces_of[std::minmax(whole.faces(f, k), whole.faces(f, (k + 1) % 3))].push_back(f);
+    }
+  }
+  int inside = 0, at_seams = 0;
+  for (int f = 0; f <= last && (inside < 20 || at_seams < 20); f += 37) {
+    bool is_inside = true;
+    for (int k = 0; k < 3; ++k) {
+      for (const int other : faces_of[std::minmax(whole.faces(f, k), whole.faces(f, (k + 1) % 3))]) {
+        is_inside &= whole.face_part[other] == whole.face_part[f];
+      }
+    }
+    if (++(is_inside ? inside : at_seams) > 20) continue;
+    const BodyModelData body = WithFaceFilled(f, whole);
+    ASSERT_EQ(body.faces.rows(), last + 1);
+    EXPECT_EQ(body.faces.row(last), whole.faces.row(f));
+    EXPECT_TRUE(Check(body).IsClean());
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(parts_of[body.ft(last, k)].count(body.face_part[last])) << "face " << f;
+    if (!is_inside) continue;
+    EXPECT_EQ(body.face_part[last], whole.face_part[f]);
+    EXPECT_EQ(body.ft.row(last), whole.ft.row(f)) << "face " << f;
+    EXPECT_EQ(body.face_iuv.row(last), whole.face_iuv.row(f)) << "face " << f;
+  }
+  EXPECT_GE(inside, 20);
+  EXPECT_GE(at_seams, 20);
+}
+
+TEST(RepairBody, RefusesFacesThatCloseNoHole) {
+  BodyModelData torn = BuiltinBody().data();
+  const Eigen::Index F = torn.faces.rows() - 1;
+  torn.faces.conservativeResize(F, 3), torn.ft.conservativeResize(F, 3), torn.face_iuv.conservativeResize(F, 6);
+  torn.face_part.pop_back();
+  const auto fill = [&](const Eigen::RowVector3i& face) {
+    BodyModelData body = torn;
+    RepairBodyOptions options;
+    options.hole_faces = [&](const MatrixX3d&, const MatrixX3i&, int) { return MatrixX3i(face); };
+    RepairBody(options, &body);
+  };
+  EXPECT_THROW(fill({0, 1, 7874}), std::invalid_argument);
+  EXPECT_THROW(fill({-1, 1, 2}), std::invalid_argument);
+  EXPECT_THROW(fill({5, 9, 5}), std::invalid_argument);
+  EXPECT_THROW(fill({10, 3000, 6000}), std::invalid_argument) << "adjoins no face";
+  EXPECT_NO_THROW(fill(BuiltinBody().data().faces.row(F)));
 }
 
 TEST(RepairBody, AMendedToyBodyPosesAsBefore) {
