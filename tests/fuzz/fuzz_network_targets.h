@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "tests/fuzz/fuzz_accepts.h"
-#include "tracking/detection/inference/onnx_network.h"
-#include "tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/inference/graph_executor.h"
+#include "tracking/detection/inference/onnx_reader.h"
+#include "tracking/detection/inference/tflite_reader.h"
 #include "tracking/detection/keypoint_model.h"
 
 namespace bodyloom::fuzz {
@@ -19,29 +20,31 @@ namespace bodyloom::fuzz {
 /// Numbers of all tensors together up to which a network is run.
 inline constexpr size_t kSmallNetwork = 20'000;
 
-inline void CheckNetwork(const TfliteModel& model, size_t file_bytes) {
-  size_t constants = 0, all = 0;
-  for (const TfliteTensor& tensor : model.tensors) {
-    constants += tensor.values().size_bytes() + tensor.ints.size() * sizeof(int32_t);
-    all += tensor.size();
-  }
-  if (constants > 16 * file_bytes) throw std::logic_error("constants beyond their bound");
-  const std::vector<int>& shape = model.tensors[static_cast<size_t>(model.inputs[0])].shape;
-  if (model.inputs.size() != 1 || shape.size() != 4 || shape[0] != 1 || all > kSmallNetwork) return;
-  TfliteNetwork network(model);
-  const std::vector<float> input(model.tensors[static_cast<size_t>(model.inputs[0])].size(), 0.5F);
-  for (const TfliteValues& output : network.Run(input)) {
-    size_t size = 1;
-    for (const int n : output.shape) size *= static_cast<size_t>(n);
-    if (output.values.size() != size) throw std::logic_error("an output of another size than its shape");
+inline void CheckOutputs(const std::vector<GraphTensor>& outputs) {
+  for (const GraphTensor& output : outputs) {
+    if (!output.has_floats() || output.floats.size() != output.size()) {
+      throw std::logic_error("an output of another size than its shape");
+    }
   }
 }
 
+inline void CheckNetwork(const OperatorGraph& graph, size_t file_bytes) {
+  size_t constants = 0, all = 0;
+  for (const OperatorGraph::Tensor& tensor : graph.tensors) {
+    constants += tensor.constant.floats.size() * sizeof(float) + tensor.constant.ints.size() * sizeof(int64_t);
+    all += GraphShapeSize(tensor.shape);
+  }
+  if (constants > 16 * file_bytes) throw std::logic_error("constants beyond their bound");
+  const size_t size = GraphShapeSize(graph.tensors[size_t(graph.inputs[0])].shape);
+  if (graph.inputs.size() != 1 || all > kSmallNetwork) return;
+  CheckOutputs(GraphExecutor(graph).Run(std::vector<float>(size, 0.5F)));
+}
+
 inline bool AcceptsTflite(const std::string& bytes) {
-  TfliteModel model;
-  if (!Accepts([&] { model = ParseTfliteModel(bytes, "fuzz.tflite"); })) return false;
+  OperatorGraph graph;
+  if (!Accepts([&] { graph = ParseTfliteGraph(bytes, "fuzz.tflite"); })) return false;
   try {
-    CheckNetwork(model, bytes.size());
+    CheckNetwork(graph, bytes.size());
   } catch (const std::exception& error) {
     throw std::logic_error(std::string("a network that was accepted: ") + error.what());
   }
@@ -51,24 +54,16 @@ inline bool AcceptsTflite(const std::string& bytes) {
 /// An ONNX file that was read is a network, or is refused in one line by what its operators make of each other; one
 /// that was tried out on zeros runs.
 inline bool AcceptsOnnx(const std::string& bytes) {
-  OnnxModel model;
-  if (!Accepts([&] { model = ParseOnnxModel(bytes, "fuzz.onnx"); })) return false;
-  std::vector<int64_t> shape = model.input_shape;
+  OperatorGraph graph;
+  if (!Accepts([&] { graph = ParseOnnxGraph(bytes, "fuzz.onnx"); })) return false;
+  std::vector<int64_t> shape = graph.tensors[size_t(graph.inputs[0])].shape;
   size_t size = 1;
   for (int64_t& n : shape) {
     n = n == -1 ? 1 : n;
     size *= static_cast<size_t>(std::min<int64_t>(n, kSmallNetwork));
     if (size > kSmallNetwork) return true;
   }
-  Accepts([&] {
-    const OnnxNetwork network(std::move(model), shape);
-    const std::vector<OnnxTensor> outputs = network.Run(std::vector<float>(size, 0.5F));
-    for (size_t i = 0; i < outputs.size(); ++i) {
-      if (!outputs[i].has_floats() || outputs[i].floats->size() != outputs[i].size()) {
-        throw std::logic_error("an output of another size than its shape");
-      }
-    }
-  });
+  Accepts([&] { CheckOutputs(GraphExecutor(graph, shape).Run(std::vector<float>(size, 0.5F))); });
   return true;
 }
 

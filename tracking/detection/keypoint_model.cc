@@ -7,24 +7,26 @@
 #include <utility>
 
 #include "geometry/base/check.h"
+#include "tracking/detection/inference/onnx_reader.h"
 
 namespace bodyloom {
 namespace {
 
 constexpr int64_t kUsualSide = 640, kLongestSide = 4096, kMostClasses = 2000, kMostPerPixel = 4;
 
-OnnxNetwork ReadNetwork(const std::string& path) {
-  OnnxModel model = ReadOnnxModel(path);
-  std::vector<int64_t> shape = model.input_shape;
+GraphExecutor ReadNetwork(const std::string& path) {
+  const OperatorGraph graph = ReadOnnxGraph(path);
+  const std::vector<int64_t>& stated = graph.tensors[size_t(graph.inputs[0])].shape;
+  std::vector<int64_t> shape = stated;
   if (shape.size() == 4) {
     const std::vector<int64_t> usual = {1, 3, kUsualSide, kUsualSide};
     for (size_t i = 0; i < 4; ++i) shape[i] = shape[i] == -1 ? usual[i] : shape[i];
   }
   if (shape.size() != 4 || shape[0] != 1 || shape[1] != 3 || std::max(shape[2], shape[3]) > kLongestSide) {
-    throw std::runtime_error(Concatenate(path, ": an input of ", OnnxShapeText(model.input_shape),
+    throw std::runtime_error(Concatenate(path, ": an input of ", GraphShapeText(stated),
                                          ", expected one picture, 1x3xHxW, of at most ", kLongestSide, " a side"));
   }
-  return {std::move(model), std::move(shape)};
+  return GraphExecutor(graph, std::move(shape));
 }
 
 bool IsOneOf(const std::vector<std::vector<int64_t>>& outputs) {
@@ -41,10 +43,10 @@ int64_t ScoresPerPixel(const std::vector<std::vector<int64_t>>& outputs, int64_t
   return fits ? r : 0;
 }
 
-std::string Shapes(const OnnxNetwork& network) {
-  std::string text = "an input of " + OnnxShapeText(network.input_shape()) + " and outputs of ";
+std::string Shapes(const GraphExecutor& network) {
+  std::string text = "an input of " + GraphShapeText(network.input_shape()) + " and outputs of ";
   for (size_t i = 0; i < network.output_shapes().size() && i < 8; ++i) {
-    text += (i == 0 ? "" : ", ") + OnnxShapeText(network.output_shapes()[i]);
+    text += (i == 0 ? "" : ", ") + GraphShapeText(network.output_shapes()[i]);
   }
   return text;
 }
@@ -85,8 +87,8 @@ KeypointModel::KeypointModel(const std::string& path) : path_(path), network_(Re
 std::vector<YoloPerson> KeypointModel::FindPeople(const Image& image) const {
   BODYLOOM_CHECK(family_ != KeypointFamily::kRtmPose, path_, ": RTMPose is shown one person at a time");
   const PictureCrop crop = LetterboxCrop(image.width, image.height, width_, height_);
-  const std::vector<OnnxTensor> outputs = network_.Run(LetterboxPixels(image, crop));
-  std::vector<YoloPerson> people = DecodeYolo(*outputs[0].floats, classes_, landmarks_, crop);
+  const std::vector<GraphTensor> outputs = network_.Run(LetterboxPixels(image, crop));
+  std::vector<YoloPerson> people = DecodeYolo(outputs[0].floats, classes_, landmarks_, crop);
   for (YoloPerson& person : people) person.points.resize(convention_.names.size());
   return people;
 }
@@ -94,8 +96,8 @@ std::vector<YoloPerson> KeypointModel::FindPeople(const Image& image) const {
 std::vector<Keypoint> KeypointModel::PoseIn(const Image& image, const PersonBox& box) const {
   BODYLOOM_CHECK(family_ == KeypointFamily::kRtmPose, path_, ": not RTMPose");
   const PictureCrop crop = TopDownCrop(box, width_, height_);
-  const std::vector<OnnxTensor> outputs = network_.Run(TopDownPixels(image, crop));
-  std::vector<Keypoint> points = DecodeSimcc(*outputs[0].floats, *outputs[1].floats, landmarks_, per_pixel_, crop);
+  const std::vector<GraphTensor> outputs = network_.Run(TopDownPixels(image, crop));
+  std::vector<Keypoint> points = DecodeSimcc(outputs[0].floats, outputs[1].floats, landmarks_, per_pixel_, crop);
   points.resize(convention_.names.size());
   return points;
 }

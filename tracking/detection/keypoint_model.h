@@ -17,7 +17,7 @@
 #include "data_tools/observations/keypoint_conventions.h"
 #include "geometry/scene/observations.h"
 #include "render/image/image.h"
-#include "tracking/detection/inference/onnx_network.h"
+#include "tracking/detection/inference/graph_executor.h"
 #include "tracking/detection/picture_crop.h"
 
 namespace bodyloom {
@@ -59,8 +59,8 @@ enum class KeypointFamily { kYoloPose, kRtmPose, kYoloBoxes };
 /// Any number of threads may use one at once.
 class KeypointModel {
  public:
-  /// Reads the file and tries the network out. Throws std::runtime_error in one line: what onnx_model.h and
-  /// onnx_network.h say, or the shapes that were found and those that are known.
+  /// Reads the file and tries the network out. Throws std::runtime_error in one line: what onnx_reader.h and
+  /// graph_executor.h say, or the shapes that were found and those that are known.
   explicit KeypointModel(const std::string& path);
 
   [[nodiscard]] KeypointFamily family() const { return family_; }
@@ -75,7 +75,7 @@ class KeypointModel {
 
  private:
   std::string path_;
-  OnnxNetwork network_;
+  GraphExecutor network_;
   KeypointFamily family_ = KeypointFamily::kYoloPose;
   KeypointConvention convention_;
   int width_ = 0, height_ = 0, landmarks_ = 0, classes_ = 1, per_pixel_ = 0;

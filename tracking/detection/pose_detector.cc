@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "geometry/base/check.h"
-#include "tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/inference/graph_executor.h"
+#include "tracking/detection/inference/tflite_reader.h"
 #include "tracking/detection/model_files.h"
 #include "tracking/detection/person_detection.h"
 
@@ -25,15 +26,15 @@ constexpr NetworkOfSize kNetworks[] = {
 const NetworkOfSize& NetworkOf(PoseNetworkSize size) { return kNetworks[static_cast<size_t>(size)]; }
 
 /// Throws unless the network has an input of size × size colours and outputs of these numbers of values.
-void CheckNetwork(const TfliteModel& model, int size, const std::vector<size_t>& outputs) {
-  const std::vector<int> expected = {1, size, size, 3};
-  bool fits = model.inputs.size() == 1 && model.tensors[size_t(model.inputs[0])].shape == expected &&
-              model.outputs.size() == outputs.size();
+void CheckNetwork(const OperatorGraph& graph, int size, const std::vector<size_t>& outputs) {
+  const std::vector<int64_t> expected = {1, size, size, 3};
+  bool fits = graph.inputs.size() == 1 && graph.tensors[size_t(graph.inputs[0])].shape == expected &&
+              graph.outputs.size() == outputs.size();
   for (size_t i = 0; fits && i < outputs.size(); ++i) {
-    fits = model.tensors[size_t(model.outputs[i])].size() == outputs[i];
+    fits = GraphShapeSize(graph.tensors[size_t(graph.outputs[i])].shape) == outputs[i];
   }
   if (!fits) {
-    throw std::runtime_error(Concatenate(model.name,
+    throw std::runtime_error(Concatenate(graph.name,
                                          ": another network, expected one of MediaPipe Pose with an input of ", size,
                                          "x", size, "x3 and ", outputs.size(), " outputs"));
   }
@@ -45,14 +46,15 @@ std::string ToText(PoseNetworkSize size) { return NetworkOf(size).name; }
 
 class PoseModels {
  public:
-  PoseModels(TfliteModel people, TfliteModel landmarks) : people(std::move(people)), landmarks(std::move(landmarks)) {}
-  TfliteModel people, landmarks;
+  PoseModels(OperatorGraph people, OperatorGraph landmarks)
+      : people(std::move(people)), landmarks(std::move(landmarks)) {}
+  OperatorGraph people, landmarks;
 };
 
 std::shared_ptr<const PoseModels> ReadPoseModels(const std::string& folder, PoseNetworkSize size) {
   constexpr size_t n = kPoseNetworkLandmarks;
-  auto models = std::make_shared<PoseModels>(ReadTfliteModel(FindModelFile(kPoseDetectorFile, folder)),
-                                             ReadTfliteModel(FindModelFile(NetworkOf(size).file, folder)));
+  auto models = std::make_shared<PoseModels>(ReadTfliteGraph(FindModelFile(kPoseDetectorFile, folder)),
+                                             ReadTfliteGraph(FindModelFile(NetworkOf(size).file, folder)));
   CheckNetwork(models->people, kPersonDetectorSize, {size_t(kPersonDetectorAnchors) * 12, kPersonDetectorAnchors});
   CheckNetwork(models->landmarks, kPoseNetworkSize,
                {n * 5, 1, size_t(kPoseNetworkSize) * kPoseNetworkSize, n * kPoseHeatmapSize * kPoseHeatmapSize, n * 3});
@@ -64,14 +66,15 @@ class PoseDetector::Networks {
   Networks(const PoseModels& models, bool with_mask)
       : with_mask_(with_mask),
         people_(models.people),
-        landmarks_(models.landmarks, with_mask ? std::vector<int>{kLandmarks, kPresence, kHeatmaps, kWorld, kMask}
-                                               : std::vector<int>{kLandmarks, kPresence, kHeatmaps, kWorld}) {}
+        landmarks_(models.landmarks, {},
+                   with_mask ? std::vector<int>{kLandmarks, kPresence, kHeatmaps, kWorld, kMask}
+                             : std::vector<int>{kLandmarks, kPresence, kHeatmaps, kWorld}) {}
 
   std::vector<PoseRegion> FindPeople(const Image& image, const PoseRegion& square, double min_score) {
-    const std::vector<TfliteValues> outputs =
+    const std::vector<GraphTensor> outputs =
         people_.Run(CropRegion(image, square, kPersonDetectorSize, 2.0F / 255, -1));
     std::vector<PoseRegion> regions;
-    for (const PersonDetection& person : DecodePersonDetections(outputs[0].values, outputs[1].values, min_score)) {
+    for (const PersonDetection& person : DecodePersonDetections(outputs[0].floats, outputs[1].floats, min_score)) {
       const PoseRegion region =
           RegionAroundBody(square.ImageFromFraction(person.points[0]), square.ImageFromFraction(person.points[1]));
       if (region.IsValid()) regions.push_back(region);
@@ -80,19 +83,18 @@ class PoseDetector::Networks {
   }
 
   DetectedPose PoseIn(const Image& image, const PoseRegion& region) {
-    const std::vector<TfliteValues> outputs =
-        landmarks_.Run(CropRegion(image, region, kPoseNetworkSize, 1.0F / 255, 0));
-    return DecodePose({.landmarks = outputs[0].values,
-                       .presence = outputs[1].values[0],
-                       .mask = with_mask_ ? std::span<const float>(outputs[4].values) : std::span<const float>(),
-                       .heatmaps = outputs[2].values,
-                       .world = outputs[3].values},
+    const std::vector<GraphTensor> outputs = landmarks_.Run(CropRegion(image, region, kPoseNetworkSize, 1.0F / 255, 0));
+    return DecodePose({.landmarks = outputs[0].floats,
+                       .presence = outputs[1].floats[0],
+                       .mask = with_mask_ ? std::span<const float>(outputs[4].floats) : std::span<const float>(),
+                       .heatmaps = outputs[2].floats,
+                       .world = outputs[3].floats},
                       region, image.width, image.height);
   }
 
  private:
   bool with_mask_;
-  TfliteNetwork people_, landmarks_;
+  GraphExecutor people_, landmarks_;
 };
 
 PoseDetector::PoseDetector(const std::shared_ptr<const PoseModels>& models, bool with_mask)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Makes small .onnx files (tracking/detection/inference/onnx_model.h), valid or with what a test puts wrong.
+/// Makes small .onnx files (tracking/detection/inference/onnx_reader.h), valid or with what a test puts wrong.
 #pragma once
 
 #include <cstdint>

@@ -16,23 +16,24 @@
 #include "data_tools/formats/atomic_file.h"
 #include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/formats/expect_file_error.h"
-#include "tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/inference/graph_executor.h"
+#include "tracking/detection/inference/tflite_reader.h"
 #include "tracking/detection/model_files.h"
 
 namespace bodyloom::pose_networks_test {
 namespace {
 
-std::optional<TfliteModel> ModelIfThere(const std::string& file) {
+std::optional<OperatorGraph> ModelIfThere(const std::string& file) {
   std::string path;
   try {
     path = FindModelFile(file);
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }
-  return ReadTfliteModel(path);
+  return ReadTfliteGraph(path);
 }
 
-std::vector<float> Pattern(const std::vector<int>& shape, bool detector) {
+std::vector<float> Pattern(const std::vector<int64_t>& shape, bool detector) {
   std::vector<float> values;
   for (int row = 0; row < shape[1]; ++row) {
     for (int column = 0; column < shape[2]; ++column) {
@@ -45,35 +46,41 @@ std::vector<float> Pattern(const std::vector<int>& shape, bool detector) {
   return values;
 }
 
+/// Of the file, where relu6 is part of the operator before.
+size_t NumOperators(const OperatorGraph& graph) {
+  return graph.nodes.size() - static_cast<size_t>(std::count_if(graph.nodes.begin(), graph.nodes.end(),
+                                                                [](const GraphNode& n) { return n.op == "Clip"; }));
+}
+
 struct Spread {
   double mean, deviation;
 };
 
-void ExpectSpread(const TfliteValues& output, const Spread& expected, double tolerance, const std::string& what) {
+void ExpectSpread(const GraphTensor& output, const Spread& expected, double tolerance, const std::string& what) {
   double mean = 0, square = 0;
-  for (const float value : output.values) mean += value;
-  mean /= static_cast<double>(output.values.size());
-  for (const float value : output.values) square += (value - mean) * (value - mean);
+  for (const float value : output.floats) mean += value;
+  mean /= static_cast<double>(output.floats.size());
+  for (const float value : output.floats) square += (value - mean) * (value - mean);
   EXPECT_NEAR(mean, expected.mean, tolerance) << what;
-  EXPECT_NEAR(std::sqrt(square / static_cast<double>(output.values.size())), expected.deviation, tolerance) << what;
+  EXPECT_NEAR(std::sqrt(square / static_cast<double>(output.floats.size())), expected.deviation, tolerance) << what;
 }
 
-void ExpectFirst(const TfliteValues& output, const std::vector<double>& expected, double tolerance,
+void ExpectFirst(const GraphTensor& output, const std::vector<double>& expected, double tolerance,
                  const std::string& what) {
   for (size_t i = 0; i < expected.size(); ++i)
-    EXPECT_NEAR(output.values[i], expected[i], tolerance) << what << " " << i;
+    EXPECT_NEAR(output.floats[i], expected[i], tolerance) << what << " " << i;
 }
 
 TEST(PoseNetworks, Detector) {
-  const std::optional<TfliteModel> model = ModelIfThere(kPoseDetectorFile);
+  const std::optional<OperatorGraph> model = ModelIfThere(kPoseDetectorFile);
   if (!model) GTEST_SKIP() << kPoseDetectorFile << " is not there; ./dev models fetches it";
-  EXPECT_EQ(model->operators.size(), 109U);
-  TfliteNetwork network(*model);
-  ASSERT_EQ(network.input_shape(), (std::vector<int>{1, 224, 224, 3}));
-  const std::vector<TfliteValues> outputs = network.Run(Pattern(network.input_shape(), true));
+  EXPECT_EQ(NumOperators(*model), 109U);
+  GraphExecutor network(*model);
+  ASSERT_EQ(network.input_shape(), (std::vector<int64_t>{1, 224, 224, 3}));
+  const std::vector<GraphTensor> outputs = network.Run(Pattern(network.input_shape(), true));
   ASSERT_EQ(outputs.size(), 2U);
-  ASSERT_EQ(outputs[0].shape, (std::vector<int>{1, 2254, 12}));
-  ASSERT_EQ(outputs[1].shape, (std::vector<int>{1, 2254, 1}));
+  ASSERT_EQ(outputs[0].shape, (std::vector<int64_t>{1, 2254, 12}));
+  ASSERT_EQ(outputs[1].shape, (std::vector<int64_t>{1, 2254, 1}));
   ExpectSpread(outputs[0], {-1.90978, 66.98011}, 5e-5, "boxes");
   ExpectSpread(outputs[1], {-56.87803, 63.75568}, 5e-5, "scores");
   ExpectFirst(outputs[0], {0.0886, -3.5152, 5.2196, -0.3981}, 1e-3, "boxes");
@@ -92,15 +99,15 @@ struct Landmarks {
 // Tolerances: what TensorFlow Lite's own builds differ by on a pattern like this (4e-3 crop pixels, 0.6 mask logits,
 // 7e-4 heatmap logits). Single numbers are compared with exact sums below.
 void ExpectLandmarks(const Landmarks& expected) {
-  const std::optional<TfliteModel> model = ModelIfThere(expected.file);
+  const std::optional<OperatorGraph> model = ModelIfThere(expected.file);
   if (!model) GTEST_SKIP() << expected.file << " is not there; ./dev models fetches it";
   const std::string what = expected.file;
-  EXPECT_EQ(model->operators.size(), expected.operators) << what;
-  TfliteNetwork network(*model);
-  ASSERT_EQ(network.input_shape(), (std::vector<int>{1, 256, 256, 3}));
+  EXPECT_EQ(NumOperators(*model), expected.operators) << what;
+  GraphExecutor network(*model);
+  ASSERT_EQ(network.input_shape(), (std::vector<int64_t>{1, 256, 256, 3}));
   const std::vector<float> input = Pattern(network.input_shape(), false);
-  const std::vector<TfliteValues> outputs = network.Run(input);
-  const std::vector<std::vector<int>> shapes = {{1, 195}, {1, 1}, {1, 256, 256, 1}, {1, 64, 64, 39}, {1, 117}};
+  const std::vector<GraphTensor> outputs = network.Run(input);
+  const std::vector<std::vector<int64_t>> shapes = {{1, 195}, {1, 1}, {1, 256, 256, 1}, {1, 64, 64, 39}, {1, 117}};
   ASSERT_EQ(outputs.size(), shapes.size());
   for (size_t i = 0; i < shapes.size(); ++i) ASSERT_EQ(outputs[i].shape, shapes[i]) << what;
   ExpectSpread(outputs[0], expected.points, 1e-3, what + " points");
@@ -111,40 +118,40 @@ void ExpectLandmarks(const Landmarks& expected) {
   ExpectSpread(outputs[4], expected.world, 2e-5, what + " world");
 
   // Without the mask's branch, in two threads at once: the same bits.
-  std::vector<std::vector<TfliteValues>> without(2);
+  std::vector<std::vector<GraphTensor>> without(2);
   std::vector<std::thread> threads;
   threads.reserve(without.size());
-  for (std::vector<TfliteValues>& own : without) {
+  for (std::vector<GraphTensor>& own : without) {
     threads.emplace_back([&] {
-      TfliteNetwork branch(*model, {0, 1, 3, 4});
-      EXPECT_LT(branch.num_operators(), network.num_operators()) << what;
+      const GraphExecutor branch(*model, {}, {0, 1, 3, 4});
+      EXPECT_LT(branch.num_steps(), network.num_steps()) << what;
       for (int run = 0; run < 2; ++run) own = branch.Run(input);
     });
   }
   for (std::thread& thread : threads) thread.join();
-  for (const std::vector<TfliteValues>& own : without) {
+  for (const std::vector<GraphTensor>& own : without) {
     ASSERT_EQ(own.size(), 4U);
-    for (size_t i = 0; i < 4; ++i) EXPECT_EQ(own[i].values, outputs[i < 2 ? i : i + 1].values) << what << " " << i;
+    for (size_t i = 0; i < 4; ++i) EXPECT_EQ(own[i].floats, outputs[i < 2 ? i : i + 1].floats) << what << " " << i;
   }
 }
 
 /// Every number of every output against plain loops whose sums are in double precision.
 TEST(PoseNetworks, LiteAsExactSumsGiveIt) {
-  const std::optional<TfliteModel> model = ModelIfThere(kPoseLandmarkLiteFile);
+  const std::optional<OperatorGraph> model = ModelIfThere(kPoseLandmarkLiteFile);
   if (!model) GTEST_SKIP() << kPoseLandmarkLiteFile << " is not there; ./dev models fetches it";
-  TfliteNetwork network(*model);
+  GraphExecutor network(*model);
   const std::vector<float> input = Pattern(network.input_shape(), false);
   const std::vector<std::vector<float>> exact = RunReference(*model, input);
-  const std::vector<TfliteValues> outputs = network.Run(input);
+  const std::vector<GraphTensor> outputs = network.Run(input);
   // Crop pixels, probability, logits of mask and heatmaps, metres; rounding on noise, amplified by 60 layers.
   const double tolerances[] = {4e-3, 1e-5, 0.6, 7e-4, 2e-5};
   ASSERT_EQ(outputs.size(), std::size(tolerances));
   for (size_t i = 0; i < outputs.size(); ++i) {
     const std::vector<float>& expected = exact[static_cast<size_t>(model->outputs[i])];
-    ASSERT_EQ(outputs[i].values.size(), expected.size());
+    ASSERT_EQ(outputs[i].floats.size(), expected.size());
     double largest = 0;
     for (size_t j = 0; j < expected.size(); ++j) {
-      largest = std::max(largest, std::abs(static_cast<double>(expected[j]) - outputs[i].values[j]));
+      largest = std::max(largest, std::abs(static_cast<double>(expected[j]) - outputs[i].floats[j]));
     }
     EXPECT_LT(largest, tolerances[i]) << "output " << i;
   }
@@ -186,17 +193,17 @@ TEST(PoseNetworks, Heavy) {
 TEST(PoseNetworks, HowManyThreadsOpenCvUsesChangesRoundingAlone) {
   const int before = cv::getNumThreads();
   for (const char* file : {kPoseDetectorFile, kPoseLandmarkLiteFile, kPoseLandmarkFullFile}) {
-    const std::optional<TfliteModel> model = ModelIfThere(file);
+    const std::optional<OperatorGraph> model = ModelIfThere(file);
     if (!model) GTEST_SKIP() << file << " is not there; ./dev models fetches it";
-    std::vector<TfliteValues> expected;
+    std::vector<GraphTensor> expected;
     for (const int threads : {1, 2, 3}) {
       cv::setNumThreads(threads);
-      TfliteNetwork network(*model);
-      std::vector<TfliteValues> outputs = network.Run(Pattern(network.input_shape(), false));
+      GraphExecutor network(*model);
+      std::vector<GraphTensor> outputs = network.Run(Pattern(network.input_shape(), false));
       for (size_t i = 0; i < expected.size(); ++i) {
         float largest = 0;
-        for (size_t j = 0; j < expected[i].values.size(); ++j) {
-          largest = std::max(largest, std::abs(outputs[i].values[j] - expected[i].values[j]));
+        for (size_t j = 0; j < expected[i].floats.size(); ++j) {
+          largest = std::max(largest, std::abs(outputs[i].floats[j] - expected[i].floats[j]));
         }
         EXPECT_LT(largest, 2e-3F) << file << " output " << i << ", " << threads << " threads";
       }
@@ -210,7 +217,7 @@ TEST(PoseNetworks, CutDetector) {
   if (!ModelIfThere(kPoseDetectorFile)) GTEST_SKIP() << kPoseDetectorFile << " is not there; ./dev models fetches it";
   const std::string bytes = ReadFileBytes(FindModelFile(kPoseDetectorFile));
   for (size_t length = 0; length < bytes.size(); length += bytes.size() / 100) {
-    FileErrorOf("cut", [&] { ParseTfliteModel(std::string_view(bytes).substr(0, length), "cut"); });
+    FileErrorOf("cut", [&] { ParseTfliteGraph(std::string_view(bytes).substr(0, length), "cut"); });
   }
 }
 

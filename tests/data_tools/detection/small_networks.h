@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tests/data_tools/detection/tflite_writer.h"
-#include "tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_reader.h"
 
 namespace bodyloom {
 
@@ -49,9 +49,7 @@ inline std::vector<TfliteWriter> SmallNetworks() {
 }
 
 /// A constant's values, to compare.
-inline std::vector<float> ValuesOf(const TfliteTensor& tensor) {
-  return {tensor.values().begin(), tensor.values().end()};
-}
+inline std::vector<float> ValuesOf(const OperatorGraph::Tensor& tensor) { return tensor.constant.floats.Copy(); }
 
 /// A convolution of a 1×4×4×2 input; its tensors are 0 input, 1 kernel, 2 bias, 3 output.
 inline TfliteWriter OneConvolution() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Files that are cut off, changed or something else altogether: read or refused in one line, never overrun.
-#include "tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@ namespace {
 
 using Writer = TfliteWriter;
 
-TEST(TfliteModel, OtherFilesAreRefused) {
+TEST(TfliteReader, OtherFilesAreRefused) {
   for (const std::string& bytes : {std::string(), std::string("TFL3"), std::string(100, '\0'),
                                    std::string("\x08\0\0\0TFL2", 8), std::string("\xFF\xFF\xFF\xFFTFL3", 8),
                                    std::string("\x08\0\0\0TFL3", 8), std::string("\x08\0\0\0TFL3\x04\0\0\0", 12)}) {
-    FileErrorOf("other.tflite", [&] { ParseTfliteModel(bytes, "other.tflite"); });
+    FileErrorOf("other.tflite", [&] { ParseTfliteGraph(bytes, "other.tflite"); });
   }
 }
 
@@ -29,7 +29,7 @@ TEST(TfliteModel, OtherFilesAreRefused) {
 void ExpectReadOrRefused(const std::string& bytes, int* accepted) {
   const std::vector<char> exact(bytes.begin(), bytes.end());
   try {
-    ParseTfliteModel({exact.data(), exact.size()}, "cut.tflite");
+    ParseTfliteGraph({exact.data(), exact.size()}, "cut.tflite");
     ++*accepted;
   } catch (const std::runtime_error& error) {
     ASSERT_EQ(std::string(error.what()).rfind("cut.tflite: ", 0), 0U) << error.what();
@@ -37,7 +37,7 @@ void ExpectReadOrRefused(const std::string& bytes, int* accepted) {
   }
 }
 
-TEST(TfliteModel, CutAnywhere) {
+TEST(TfliteReader, CutAnywhere) {
   for (const Writer& writer : SmallNetworks()) {
     const std::string bytes = writer.Bytes();
     int accepted = 0;
@@ -48,7 +48,7 @@ TEST(TfliteModel, CutAnywhere) {
   }
 }
 
-TEST(TfliteModel, EveryByteChanged) {
+TEST(TfliteReader, EveryByteChanged) {
   for (const Writer& writer : SmallNetworks()) {
     const std::string bytes = writer.Bytes();
     int accepted = 0;
@@ -64,7 +64,7 @@ TEST(TfliteModel, EveryByteChanged) {
   }
 }
 
-TEST(TfliteModel, ManyBytesChanged) {
+TEST(TfliteReader, ManyBytesChanged) {
   std::mt19937 random(4);
   int accepted = 0;
   for (const Writer& writer : SmallNetworks()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/tflite_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ void ExpectRefusals(const std::vector<Refusal>& refusals, const std::function<Wr
     Writer writer = make();
     refusal.change(&writer);
     const std::string bytes = writer.Bytes();
-    const std::string message = FileErrorOf("bad.tflite: ", [&] { ParseTfliteModel(bytes, "bad.tflite"); });
+    const std::string message = FileErrorOf("bad.tflite: ", [&] { ParseTfliteGraph(bytes, "bad.tflite"); });
     EXPECT_NE(message.find(refusal.expected), std::string::npos) << message << "\n  expected: " << refusal.expected;
     EXPECT_NE(message.find("expected"), std::string::npos) << message;
   }
@@ -40,7 +40,7 @@ void SetOptions(Writer* writer, const Writer::Options& options) {
   writer->operators.back().Set(4, node);
 }
 
-TEST(TfliteModel, RefusesWhatItDoesNotRun) {
+TEST(TfliteReader, RefusesWhatItDoesNotRun) {
   const std::vector<int32_t> wrong_shape = {1, 4, 5, 3}, zero_side = {1, 0, 4, 3}, huge = {1, 100000, 100000, 3};
   const auto shape = [](Writer* w, size_t tensor, const std::vector<int32_t>& sides) {
     w->tensors[tensor].Set(0, FlatNode::Numbers(sides));
@@ -169,14 +169,14 @@ TEST(TfliteModel, RefusesWhatItDoesNotRun) {
       [] { return OneConvolution(); });
 }
 
-TEST(TfliteModel, RefusesValuesThatAreNotFinite) {
+TEST(TfliteReader, RefusesValuesThatAreNotFinite) {
   for (const float value : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
     Writer writer = OneConvolution();
     std::string bytes(reinterpret_cast<const char*>(&value), sizeof(value));
     bytes += std::string(20, '\0');
     writer.buffers[1] = FlatNode::Table().Set(0, FlatNode::Text(bytes));
     const std::string file = writer.Bytes();
-    const std::string message = FileErrorOf("bad", [&] { ParseTfliteModel(file, "bad"); });
+    const std::string message = FileErrorOf("bad", [&] { ParseTfliteGraph(file, "bad"); });
     EXPECT_NE(message.find("tensor 1 't1': value 0 is"), std::string::npos) << message;
   }
 }
@@ -189,7 +189,7 @@ Writer On(const std::vector<int>& input, const std::function<int(Writer*)>& appl
   return writer;
 }
 
-TEST(TfliteModel, RefusesOperandsThatDoNotFit) {
+TEST(TfliteReader, RefusesOperandsThatDoNotFit) {
   const std::vector<std::pair<const char*, Writer>> cases = {
       {"(ADD): 1x2x2x3 and 1x1x2x3, expected equal shapes",
        On({1, 2, 2, 3},
@@ -316,7 +316,7 @@ TEST(TfliteModel, RefusesOperandsThatDoNotFit) {
   };
   for (const auto& [expected, writer] : cases) {
     const std::string bytes = writer.Bytes();
-    const std::string message = FileErrorOf("bad.tflite: ", [&] { ParseTfliteModel(bytes, "bad.tflite"); });
+    const std::string message = FileErrorOf("bad.tflite: ", [&] { ParseTfliteGraph(bytes, "bad.tflite"); });
     EXPECT_NE(message.find(expected), std::string::npos) << message << "\n  expected: " << expected;
   }
 }
@@ -352,8 +352,8 @@ std::string SparseFile(const SparseParts& parts) {
   return writer.Bytes();
 }
 
-TEST(TfliteModel, RefusesSparseConstantsThatLie) {
-  EXPECT_EQ(ValuesOf(ParseTfliteModel(SparseFile({}), "sparse").tensors[3]),
+TEST(TfliteReader, RefusesSparseConstantsThatLie) {
+  EXPECT_EQ(ValuesOf(ParseTfliteGraph(SparseFile({}), "sparse").tensors[3]),
             (std::vector<float>{0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0}));
   const std::vector<std::pair<const char*, std::function<void(SparseParts*)>>> cases = {
       {"3 row starts for 3 rows",
@@ -411,13 +411,13 @@ TEST(TfliteModel, RefusesSparseConstantsThatLie) {
     SparseParts parts;
     change(&parts);
     const std::string bytes = SparseFile(parts);
-    const std::string message = FileErrorOf("bad.tflite: ", [&] { ParseTfliteModel(bytes, "bad.tflite"); });
+    const std::string message = FileErrorOf("bad.tflite: ", [&] { ParseTfliteGraph(bytes, "bad.tflite"); });
     EXPECT_NE(message.find(expected), std::string::npos) << message << "\n  expected: " << expected;
   }
 }
 
 // A sparse constant names its size and stores next to nothing; a thousand tensors may point at one buffer.
-TEST(TfliteModel, ConstantsAreBoundedByTheFile) {
+TEST(TfliteReader, ConstantsAreBoundedByTheFile) {
   Writer sparse;
   const int input = sparse.Input({1, 1, 1, 1024});
   const int kernel = sparse.Floats({1024, 1, 1, 1024}, std::vector<float>(size_t{1024} * 1024, 0), Storage::kSparse);
@@ -427,7 +427,7 @@ TEST(TfliteModel, ConstantsAreBoundedByTheFile) {
   for (FlatNode& tensor : sparse.tensors) tensor.Set(2, static_cast<int32_t>(0));
   sparse.tensors[1].Set(2, static_cast<int32_t>(sparse.buffers.size()) - 1);
   std::string bytes = sparse.Bytes();
-  std::string message = FileErrorOf("lies", [&] { ParseTfliteModel(bytes, "lies"); });
+  std::string message = FileErrorOf("lies", [&] { ParseTfliteGraph(bytes, "lies"); });
   EXPECT_NE(message.find("constants of more than 16 times the file's bytes"), std::string::npos) << message;
 
   Writer shared;
@@ -441,17 +441,17 @@ TEST(TfliteModel, ConstantsAreBoundedByTheFile) {
   shared.outputs = {last};
   bytes = shared.Bytes();
   EXPECT_LT(bytes.size(), 60'000U);
-  message = FileErrorOf("lies", [&] { ParseTfliteModel(bytes, "lies"); });
+  message = FileErrorOf("lies", [&] { ParseTfliteGraph(bytes, "lies"); });
   EXPECT_NE(message.find("constants of more than 16 times the file's bytes"), std::string::npos) << message;
 }
 
-TEST(TfliteModel, WhatIsComputedIsBounded) {
+TEST(TfliteReader, WhatIsComputedIsBounded) {
   Writer writer;
   int last = writer.Input({1, 4096, 4096, 1});
   for (int i = 0; i < 16; ++i) last = writer.Apply(Writer::kLogistic, {last}, {1, 4096, 4096, 1});
   writer.outputs = {last};
   const std::string bytes = writer.Bytes();
-  const std::string message = FileErrorOf("large", [&] { ParseTfliteModel(bytes, "large"); });
+  const std::string message = FileErrorOf("large", [&] { ParseTfliteGraph(bytes, "large"); });
   EXPECT_NE(message.find("more than 268435456 numbers to compute"), std::string::npos) << message;
 }
 

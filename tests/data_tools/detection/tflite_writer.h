@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Makes small .tflite files (tracking/detection/inference/tflite_model.h), valid or with what a test puts wrong.
+/// Makes small .tflite files (tracking/detection/inference/tflite_reader.h), valid or with what a test puts wrong.
 #pragma once
 
 #include <bit>

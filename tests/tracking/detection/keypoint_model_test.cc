@@ -103,7 +103,7 @@ TEST_F(OnnxDetectors, ShapesThatAreNotKnownAreSaid) {
   const auto of = [&](const std::vector<int64_t>& input, const std::vector<std::vector<int64_t>>& shapes) {
     std::vector<ScriptedOutput> outputs;
     for (const std::vector<int64_t>& shape : shapes) {
-      const std::vector<float> zeros(size_t(OnnxShapeSize(shape)), 0.0F);
+      const std::vector<float> zeros(size_t(GraphShapeSize(shape)), 0.0F);
       outputs.push_back({shape, zeros, zeros});
     }
     return RefusalOf(Write("other.onnx", ScriptedNetwork(input, outputs)));

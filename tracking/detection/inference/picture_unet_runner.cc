@@ -1,102 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/detection/inference/picture_unet_runner.h"
 
-#include <algorithm>
+#include <map>
+#include <string>
 
 #include "geometry/base/check.h"
-#include "geometry/math/arrays.h"
-#include "tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/graph.h"
 
 namespace bodyloom {
 namespace {
 
-/// The network for pictures of one size, as operators of a TensorFlow Lite model.
-class UnetModel {
+/// The network as a graph whose images have their channels last, for pictures of one size.
+class UnetGraph {
  public:
-  UnetModel(const PictureUnetWeights& weights, PictureUnetPlanes planes, int width, int height)
+  UnetGraph(const PictureUnetWeights& weights, PictureUnetPlanes planes, int width, int height)
       : weights_(weights), layers_(PictureUnetLayers(planes)) {
-    model_.name = "picture U-Net";
-    int full = Image(height / 2, width / 2, layers_[0].in);
-    model_.inputs = {full};
-    full = Convolve(Convolve(full));
-    const int half = Convolve(Convolve(full));
-    const int quarter = Convolve(Convolve(half));
-    int x = Convolve(Convolve(quarter));
-    for (const int skip : {quarter, half, full}) x = Convolve(Convolve(Joined(Enlarged(x), skip)));
-    x = Convolve(x);
-    const std::vector<int> shape = model_.tensors[x].shape;
-    const int picture = Image(2 * shape[1], 2 * shape[2], shape[3] / 4);
-    TfliteOperator laid_out;
-    laid_out.kind = TfliteKind::kDepthToSpace;
-    laid_out.inputs = {x};
-    laid_out.output = picture;
-    laid_out.block_size = 2;
-    model_.operators.push_back(laid_out);
-    model_.outputs = {picture};
+    graph_.name = "picture U-Net";
+    graph_.opset = 13;
+    graph_.channels_last = true;
+    graph_.tensors.push_back({"input", {1, height / 2, width / 2, layers_[0].in}, {}});
+    graph_.inputs = {0};
+    const int full = Convolve(Convolve(0)), half = Convolve(Convolve(full)), quarter = Convolve(Convolve(half));
+    int x = Convolve(Convolve(quarter)), scale = 4;
+    for (const int skip : {quarter, half, full}) {
+      const std::vector<int64_t> size = {1, height / 2 / scale, width / 2 / scale, channels_};
+      const int enlarged =
+          Add("Resize", {x}, {{"mode", GraphAttribute::Text("linear")}, {"sizes", GraphAttribute::Ints(size)}});
+      x = Convolve(Convolve(Add("Concat", {enlarged, skip}, {{"axis", GraphAttribute::Ints({3})}})));
+      scale /= 2;
+    }
+    graph_.outputs = {Add("DepthToSpace", {Convolve(x)}, {{"blocksize", GraphAttribute::Ints({2})}})};
   }
 
-  [[nodiscard]] const TfliteModel& model() const { return model_; }
+  [[nodiscard]] const OperatorGraph& graph() const { return graph_; }
 
  private:
-  int Add(TfliteTensor tensor) {
-    model_.tensors.push_back(std::move(tensor));
-    return static_cast<int>(model_.tensors.size()) - 1;
+  int Add(const std::string& op, std::vector<int> inputs, std::map<std::string, GraphAttribute> attributes) {
+    const int output = static_cast<int>(graph_.tensors.size());
+    graph_.tensors.push_back({op, {}, {}});
+    graph_.nodes.push_back({op, op, std::move(inputs), {output}, std::move(attributes)});
+    return output;
   }
-  int Image(int height, int width, int channels) {
-    TfliteTensor image;
-    image.shape = {1, height, width, channels};
-    return Add(std::move(image));
-  }
-  int Constant(std::vector<int> shape, const float* values) {
-    TfliteTensor constant;
-    constant.shape = std::move(shape);
-    AlignedFloats floats = ZeroFloats(constant.size());
-    std::copy(values, values + constant.size(), floats.get());
-    constant.floats = std::move(floats);
-    return Add(std::move(constant));
+  int Constant(const std::vector<int64_t>& shape, const float* values) {
+    const size_t size = GraphShapeSize(shape);
+    graph_.tensors.push_back({"constant", shape, GraphTensor(shape, std::vector<float>(values, values + size))});
+    return static_cast<int>(graph_.tensors.size()) - 1;
   }
 
-  /// The next convolution.
+  /// The next convolution. Its sides are even where its stride is 2: zeros before its first row would not be read.
   int Convolve(int from) {
     const PictureUnetLayer& shape = layers_[next_];
     const PictureUnetWeights::Convolution& numbers = weights_.convolutions[next_++];
-    const std::vector<int> in = model_.tensors[from].shape;
-    TfliteOperator convolution;
-    convolution.kind = TfliteKind::kConv2d;
-    convolution.inputs = {from, Constant({shape.out, 3, 3, shape.in}, numbers.kernel.data()),
-                          Constant({shape.out}, numbers.bias.data())};
-    convolution.relu6 = shape.relu6;
-    convolution.same_padding = true;
-    convolution.filter_h = convolution.filter_w = 3;
-    convolution.stride_h = convolution.stride_w = shape.stride;
-    convolution.output = Image(in[1] / shape.stride, in[2] / shape.stride, shape.out);
-    model_.operators.push_back(convolution);
-    return convolution.output;
-  }
-  int Enlarged(int from) {
-    const std::vector<int> in = model_.tensors[from].shape;
-    TfliteOperator enlarged;
-    enlarged.kind = TfliteKind::kResizeBilinear;
-    enlarged.inputs = {from};
-    enlarged.output = Image(2 * in[1], 2 * in[2], in[3]);
-    model_.operators.push_back(enlarged);
-    return enlarged.output;
-  }
-  int Joined(int a, int b) {
-    const std::vector<int> in = model_.tensors[a].shape;
-    TfliteOperator joined;
-    joined.kind = TfliteKind::kConcatenation;
-    joined.inputs = {a, b};
-    joined.axis = 3;
-    joined.output = Image(in[1], in[2], in[3] + model_.tensors[b].shape[3]);
-    model_.operators.push_back(joined);
-    return joined.output;
+    channels_ = shape.out;
+    const int kernel = Constant({shape.out, 3, 3, shape.in}, numbers.kernel.data());
+    const int bias = Constant({shape.out}, numbers.bias.data());
+    const int64_t stride = shape.stride, before = stride == 1 ? 1 : 0;
+    const int result = Add(
+        "Conv", {from, kernel, bias},
+        {{"strides", GraphAttribute::Ints({stride, stride})}, {"pads", GraphAttribute::Ints({before, before, 1, 1})}});
+    if (!shape.relu6) return result;
+    return Add("Clip", {result}, {{"min", GraphAttribute::Floats({0})}, {"max", GraphAttribute::Floats({6})}});
   }
 
   const PictureUnetWeights& weights_;
   decltype(PictureUnetLayers({})) layers_;
-  TfliteModel model_;
+  OperatorGraph graph_;
   size_t next_ = 0;
+  int64_t channels_ = 0;  ///< of the last convolution's result
 };
 
 /// 2×2 pixels together, channels last.
@@ -122,12 +92,12 @@ PictureUnetRunner::PictureUnetRunner(PictureUnetWeights weights, PictureUnetPlan
   BODYLOOM_CHECK(weights_.IsValid(planes, &why), "picture U-Net: ", why);
 }
 
-TfliteNetwork& PictureUnetRunner::NetworkFor(int width, int height) {
+const GraphExecutor& PictureUnetRunner::NetworkFor(int width, int height) {
   const auto size = std::make_pair(width, height);
   const auto found = networks_.find(size);
   if (found != networks_.end()) return found->second;
-  const UnetModel made(weights_, planes_, width, height);
-  return networks_.emplace(size, TfliteNetwork(made.model())).first->second;
+  const UnetGraph made(weights_, planes_, width, height);
+  return networks_.emplace(size, GraphExecutor(made.graph())).first->second;
 }
 
 std::vector<float> PictureUnetRunner::Run(int width, int height, std::span<const float> planes) {
@@ -136,11 +106,11 @@ std::vector<float> PictureUnetRunner::Run(int width, int height, std::span<const
   const size_t pixels = static_cast<size_t>(width) * height;
   BODYLOOM_CHECK(planes.size() == planes_.in * pixels, "picture U-Net: ", planes.size(), " numbers for ", width, "x",
                  height, " pixels, expected ", planes_.in, " each");
-  const std::vector<TfliteValues> answer = NetworkFor(width, height).Run(Together(width, height, planes_.in, planes));
+  const std::vector<GraphTensor> answer = NetworkFor(width, height).Run(Together(width, height, planes_.in, planes));
   const size_t outputs = planes_.out;
   std::vector<float> out(outputs * pixels);
   for (size_t i = 0; i < pixels; ++i) {
-    for (size_t c = 0; c < outputs; ++c) out[c * pixels + i] = answer[0].values[outputs * i + c];
+    for (size_t c = 0; c < outputs; ++c) out[c * pixels + i] = answer[0].floats[outputs * i + c];
   }
   return out;
 }

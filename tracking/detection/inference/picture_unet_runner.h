@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render/image/parser_weights.h"
-#include "tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/inference/graph_executor.h"
 
 namespace bodyloom {
 
@@ -24,11 +24,11 @@ class PictureUnetRunner {
   std::vector<float> Run(int width, int height, std::span<const float> planes);
 
  private:
-  TfliteNetwork& NetworkFor(int width, int height);
+  const GraphExecutor& NetworkFor(int width, int height);
 
   PictureUnetWeights weights_;
   PictureUnetPlanes planes_;
-  std::map<std::pair<int, int>, TfliteNetwork> networks_;
+  std::map<std::pair<int, int>, GraphExecutor> networks_;
 };
 
 }  // namespace bodyloom

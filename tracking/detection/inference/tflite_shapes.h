@@ -1,14 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The shapes that TensorFlow Lite's operators give their results.
+/// TensorFlow Lite's operators as tflite_reader.cc reads them, and the shapes that they give their results.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "tracking/detection/inference/tflite_model.h"
+#include "tracking/detection/inference/graph.h"
 
 namespace bodyloom {
+
+enum class TfliteKind {
+  kAdd,
+  kConcatenation,
+  kConv2d,
+  kDepthwiseConv2d,
+  kDepthToSpace,
+  kLogistic,
+  kMaxPool2d,
+  kPad,
+  kReshape,
+  kResizeBilinear
+};
+
+struct TfliteOperator {
+  TfliteKind kind = TfliteKind::kAdd;
+  std::vector<int> inputs;  ///< places among the tensors; a bias that is left out is none
+  int output = 0;           ///< place among the tensors
+  bool relu6 = false;       ///< clamp the result to [0, 6]
+  bool same_padding = false;
+  int stride_h = 1, stride_w = 1;
+  int filter_h = 1, filter_w = 1;  ///< of a kernel or of MAX_POOL_2D
+  int axis = 0;                    ///< of CONCATENATION, from 0
+  int block_size = 1;              ///< of DEPTH_TO_SPACE
+};
 
 /// Zeros around the rows or the columns of an image.
 struct TflitePads {
@@ -21,15 +46,6 @@ TflitePads SamePads(int size, int kernel, int stride);
 
 /// Shape of the operator's result. Its inputs' shapes and the int32 constants must be there. Throws std::runtime_error
 /// "place: what was found, expected what" when the inputs do not fit each other.
-std::vector<int> TfliteOutputShape(const TfliteModel& model, const TfliteOperator& op, const std::string& place);
-
-/// N×height×width×channels.
-bool IsTfliteImage(const std::vector<int>& shape);
-
-/// Product of the sizes.
-size_t NumTfliteValues(const std::vector<int>& shape);
-
-/// "1x64x64x3".
-std::string TfliteShapeText(const std::vector<int>& shape);
+std::vector<int64_t> TfliteOutputShape(const OperatorGraph& graph, const TfliteOperator& op, const std::string& place);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/detection/inference/onnx_model.h"
+#include "tracking/detection/inference/onnx_reader.h"
 
 #include <algorithm>
 #include <cstring>
@@ -43,10 +43,10 @@ class OnnxReader {
  public:
   OnnxReader(std::string_view bytes, const std::string& name)
       : bytes_(bytes), name_(name), budget_(kMostUnpacked * bytes.size()) {
-    model_.name = name;
+    graph_.name = name;
   }
 
-  OnnxModel Read() {
+  OperatorGraph Read() {
     ProtoMessage model(bytes_, name_ + ": not an ONNX file");
     std::string_view graph;
     bool has_graph = false;
@@ -55,9 +55,9 @@ class OnnxReader {
       if (field.number == 8) ReadOperatorSet(model.Bytes(field));
     }
     if (!has_graph) Refuse(name_, "not an ONNX file", "no graph in it");
-    if (model_.opset < 7) Refuse(name_, "operators", Concatenate("version ", model_.opset, ", expected 7 or later"));
+    if (graph_.opset < 7) Refuse(name_, "operators", Concatenate("version ", graph_.opset, ", expected 7 or later"));
     ReadGraph(graph);
-    return std::move(model_);
+    return std::move(graph_);
   }
 
  private:
@@ -73,7 +73,7 @@ class OnnxReader {
       if (field.number == 1) standard = IsStandard(set.Bytes(field));
       if (field.number == 2) version = set.Integer(field);
     }
-    if (standard) model_.opset = version;
+    if (standard) graph_.opset = version;
   }
 
   static bool IsStandard(std::string_view domain) { return domain.empty() || domain == "ai.onnx"; }
@@ -92,21 +92,19 @@ class OnnxReader {
       Refuse(name_, "graph", Concatenate(nodes.size(), " nodes, expected at most ", kMostNodes));
     ReadInputs(inputs);
     for (size_t i = 0; i < nodes.size(); ++i) ReadNode(nodes[i], Concatenate("node ", i));
-    for (const std::string_view output : outputs) model_.outputs.push_back(Known(Value(output).first, "outputs"));
-    if (model_.outputs.empty()) Refuse(name_, "graph", "no outputs");
-    model_.num_tensors = int(number_.size());
+    for (const std::string_view output : outputs) graph_.outputs.push_back(Known(Value(output).first, "outputs"));
+    if (graph_.outputs.empty()) Refuse(name_, "graph", "no outputs");
   }
 
   void ReadInputs(const std::vector<std::string_view>& inputs) {
-    int count = 0;
     for (const std::string_view input : inputs) {
       auto [name, shape] = Value(input);
       if (number_.contains(name)) continue;  // a constant, as files before version 4 list them
-      model_.input = Define(name, "inputs");
-      model_.input_shape = std::move(shape);
-      ++count;
+      graph_.inputs.push_back(Define(name, "inputs"));
+      graph_.tensors.back().shape = std::move(shape);
     }
-    if (count != 1) Refuse(name_, "inputs", Concatenate(count, " of them, expected one picture"));
+    if (graph_.inputs.size() != 1)
+      Refuse(name_, "inputs", Concatenate(graph_.inputs.size(), " of them, expected one picture"));
   }
 
   /// Name and shape.
@@ -151,6 +149,7 @@ class OnnxReader {
   int Define(const std::string& name, const std::string& place) {
     const auto [at, is_new] = number_.emplace(name, int(number_.size()));
     if (!is_new) Refuse(name_, place, "'" + PrintableText(name) + "' is written twice");
+    graph_.tensors.push_back({PrintableText(name), {}, {}});
     return at->second;
   }
 
@@ -165,7 +164,7 @@ class OnnxReader {
 
   void ReadNode(std::string_view bytes, std::string place) {
     ProtoMessage message = Message(bytes, place);
-    OnnxNode& node = model_.nodes.emplace_back();
+    GraphNode& node = graph_.nodes.emplace_back();
     std::vector<std::string> inputs, outputs;
     std::vector<std::string_view> attributes;
     bool standard = true;
@@ -186,10 +185,10 @@ class OnnxReader {
     for (const std::string& output : outputs) node.outputs.push_back(output.empty() ? -1 : Define(output, place));
   }
 
-  void ReadAttribute(std::string_view bytes, const std::string& place, OnnxNode* node) {
+  void ReadAttribute(std::string_view bytes, const std::string& place, GraphNode* node) {
     ProtoMessage message = Message(bytes, place);
     std::string name;
-    OnnxAttribute value;
+    GraphAttribute value;
     for (ProtoField field; message.Next(&field);) {
       switch (field.number) {
         case 1:
@@ -224,7 +223,9 @@ class OnnxReader {
     const StoredTensor stored = Stored(bytes, "constants");
     const std::string name(stored.name);
     const int number = Define(name, "constants");
-    model_.constants[number] = Tensor(stored, "constant '" + PrintableText(name) + "'");
+    OperatorGraph::Tensor& tensor = graph_.tensors[size_t(number)];
+    tensor.constant = Tensor(stored, "constant '" + tensor.name + "'");
+    tensor.shape = stored.shape;
   }
 
   [[nodiscard]] StoredTensor Stored(std::string_view bytes, const std::string& place) const {
@@ -262,11 +263,11 @@ class OnnxReader {
     return stored;
   }
 
-  OnnxTensor Tensor(const StoredTensor& stored, const std::string& place) {
+  GraphTensor Tensor(const StoredTensor& stored, const std::string& place) {
     if (stored.shape.size() > kMostAxes) Refuse(name_, place, Concatenate(stored.shape.size(), " axes"));
     size_t size = 0;
     try {
-      size = OnnxShapeSize(stored.shape);
+      size = GraphShapeSize(stored.shape);
     } catch (const std::runtime_error& error) {
       Refuse(name_, place, error.what());
     }
@@ -290,7 +291,7 @@ class OnnxReader {
     if (stored.raw.size() != size * each) {
       Refuse(name_, place,
              Concatenate(stored.raw.size(), " bytes, expected ", size * each, " for a shape of ",
-                         OnnxShapeText(stored.shape)));
+                         GraphShapeText(stored.shape)));
     }
   }
 
@@ -327,83 +328,14 @@ class OnnxReader {
   std::string_view bytes_;
   const std::string& name_;
   size_t budget_;
-  OnnxModel model_;
+  OperatorGraph graph_;
   std::map<std::string, int> number_;  ///< of the tensor of that name
 };
 
-const OnnxAttribute* Find(const OnnxNode& node, const std::string& key) {
-  const auto at = node.attributes.find(key);
-  return at == node.attributes.end() ? nullptr : &at->second;
-}
-
 }  // namespace
 
-int64_t OnnxNode::Integer(const std::string& key, int64_t absent) const {
-  const OnnxAttribute* attribute = Find(*this, key);
-  return attribute == nullptr || attribute->ints.empty() ? absent : attribute->ints[0];
-}
+OperatorGraph ParseOnnxGraph(std::string_view bytes, const std::string& name) { return OnnxReader(bytes, name).Read(); }
 
-float OnnxNode::Float(const std::string& key, float absent) const {
-  const OnnxAttribute* attribute = Find(*this, key);
-  return attribute == nullptr || attribute->floats.empty() ? absent : attribute->floats[0];
-}
-
-std::vector<int64_t> OnnxNode::Integers(const std::string& key, const std::vector<int64_t>& absent) const {
-  const OnnxAttribute* attribute = Find(*this, key);
-  return attribute == nullptr ? absent : attribute->ints;
-}
-
-std::string OnnxNode::Text(const std::string& key, const std::string& absent) const {
-  const OnnxAttribute* attribute = Find(*this, key);
-  return attribute == nullptr ? absent : attribute->text;
-}
-
-OnnxModel ParseOnnxModel(std::string_view bytes, const std::string& name) { return OnnxReader(bytes, name).Read(); }
-
-OnnxModel ReadOnnxModel(const std::string& path) { return ParseOnnxModel(ReadFileBytes(path, kMostBytes), path); }
-
-namespace {
-
-constexpr size_t kMostNumbers = size_t{1} << 27;
-
-}  // namespace
-
-OnnxTensor::OnnxTensor(std::vector<int64_t> its_shape, std::vector<float> values)
-    : shape(std::move(its_shape)), floats(std::make_shared<const std::vector<float>>(std::move(values))) {
-  BODYLOOM_CHECK(floats->size() == size(), floats->size(), " numbers for a tensor of ", OnnxShapeText(shape));
-}
-
-OnnxTensor::OnnxTensor(std::vector<int64_t> its_shape, std::vector<int64_t> values)
-    : shape(std::move(its_shape)), ints(std::make_shared<const std::vector<int64_t>>(std::move(values))) {
-  BODYLOOM_CHECK(ints->size() == size(), ints->size(), " numbers for a tensor of ", OnnxShapeText(shape));
-}
-
-size_t OnnxTensor::size() const { return OnnxShapeSize(shape); }
-
-OnnxTensor OnnxTensor::Reshaped(std::vector<int64_t> to) const {
-  BODYLOOM_CHECK(OnnxShapeSize(to) == size(), OnnxShapeText(shape), " cannot become ", OnnxShapeText(to));
-  OnnxTensor result = *this;
-  result.shape = std::move(to);
-  return result;
-}
-
-size_t OnnxShapeSize(const std::vector<int64_t>& shape) {
-  size_t product = 1;
-  for (const int64_t n : shape) {
-    if (n < 0) throw std::runtime_error("a tensor of " + OnnxShapeText(shape));
-    if (n > 0 && product > kMostNumbers / size_t(n)) {
-      throw std::runtime_error(Concatenate("a tensor of ", OnnxShapeText(shape), ", expected at most 2^27 numbers"));
-    }
-    product *= size_t(n);
-  }
-  return product;
-}
-
-std::string OnnxShapeText(const std::vector<int64_t>& shape) {
-  if (shape.empty()) return "one number";
-  std::string text;
-  for (const int64_t n : shape) text += (text.empty() ? "" : "x") + (n < 0 ? "?" : std::to_string(n));
-  return text;
-}
+OperatorGraph ReadOnnxGraph(const std::string& path) { return ParseOnnxGraph(ReadFileBytes(path, kMostBytes), path); }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/detection/inference/onnx_arithmetic.h"
+#include "tracking/detection/inference/operators.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 /// For each number of the result, calls body(place, its place in `from`): `from` is broadcast to `shape`.
 template <typename Body>
 void ForBroadcast(const std::vector<int64_t>& from, const std::vector<int64_t>& shape, const Body& body) {
-  const size_t rank = shape.size(), size = OnnxShapeSize(shape);
+  const size_t rank = shape.size(), size = GraphShapeSize(shape);
   std::vector<size_t> step(rank, 0);  // in `from`, along each axis of `shape`
   size_t stride = 1;
   for (size_t i = from.size(); i-- > 0;) {
@@ -42,24 +42,33 @@ void ForBroadcast(const std::vector<int64_t>& from, const std::vector<int64_t>& 
 }
 
 template <typename T>
-std::vector<T> Broadcast(const std::vector<T>& values, const std::vector<int64_t>& from,
+std::vector<T> Broadcast(const SharedNumbers<T>& values, const std::vector<int64_t>& from,
                          const std::vector<int64_t>& to) {
-  if (from == to) return values;
-  std::vector<T> result(OnnxShapeSize(to));
+  std::vector<T> result(GraphShapeSize(to));
   ForBroadcast(from, to, [&](size_t place, size_t source) { result[place] = values[source]; });
   return result;
 }
 
-/// compute(a, b), the smaller of the two broadcast.
+/// Two tensors' numbers of one kind, and the shape that both are broadcast to.
+template <typename T>
+struct Operands {
+  const SharedNumbers<T>&a, &b;
+  const std::vector<int64_t>&a_shape, &b_shape, &shape;
+};
+
+/// compute(a, b) of each pair.
 template <typename T, typename Compute>
-std::vector<T> Combined(std::vector<T> a, const std::vector<T>& b, const std::vector<int64_t>& b_shape,
-                        const std::vector<int64_t>& shape, const Compute& compute) {
-  if (b_shape == shape) {
-    for (size_t i = 0; i < a.size(); ++i) a[i] = compute(a[i], b[i]);
+void Combine(const Operands<T>& operands, const NewNumbers<T>& result, const Compute& compute) {
+  const auto& [a, b, a_shape, b_shape, shape] = operands;
+  if (a_shape == shape && b_shape == shape) {
+    for (size_t i = 0; i < result.size(); ++i) result[i] = compute(a[i], b[i]);
+  } else if (a_shape == shape) {
+    ForBroadcast(b_shape, shape, [&](size_t place, size_t source) { result[place] = compute(a[place], b[source]); });
   } else {
-    ForBroadcast(b_shape, shape, [&](size_t place, size_t source) { a[place] = compute(a[place], b[source]); });
+    ForBroadcast(a_shape, shape, [&](size_t place, size_t source) { result[place] = a[source]; });
+    ForBroadcast(b_shape, shape,
+                 [&](size_t place, size_t source) { result[place] = compute(result[place], b[source]); });
   }
-  return a;
 }
 
 /// Whole numbers wrap around, as a file may make them as large as it likes.
@@ -98,11 +107,8 @@ T Computed(char op, T a, T b) {
 
 /// The operator is looked at once, not once a number.
 template <typename T>
-std::vector<T> Combined(char op, std::vector<T> a, const std::vector<T>& b, const std::vector<int64_t>& b_shape,
-                        const std::vector<int64_t>& shape) {
-  const auto with = [&]<char kOp>() {
-    return Combined(std::move(a), b, b_shape, shape, [](T x, T y) { return Computed<T>(kOp, x, y); });
-  };
+void Combine(char op, const Operands<T>& operands, const NewNumbers<T>& result) {
+  const auto with = [&]<char kOp>() { Combine(operands, result, [](T x, T y) { return Computed<T>(kOp, x, y); }); };
   switch (op) {
     case '+':
       return with.template operator()<'+'>();
@@ -130,32 +136,30 @@ char Letter(const std::string& op) {
   return op == "Min" ? '<' : '>';
 }
 
-void RequireAlike(const OnnxTensor& a, const OnnxTensor& b) {
+void RequireAlike(const GraphTensor& a, const GraphTensor& b) {
   if (a.has_floats() != b.has_floats()) throw std::runtime_error("floats and whole numbers, expected one kind");
 }
 
 template <typename T>
-std::vector<int64_t> EqualPlaces(const std::vector<T>& a, const std::vector<T>& b) {
+std::vector<int64_t> EqualPlaces(const SharedNumbers<T>& a, const SharedNumbers<T>& b) {
   std::vector<int64_t> equal(a.size());
   for (size_t i = 0; i < a.size(); ++i) equal[i] = a[i] == b[i] ? 1 : 0;
   return equal;
 }
 
-OnnxTensor Equal(const OnnxTensor& a, const OnnxTensor& b, std::vector<int64_t> shape) {
-  const OnnxTensor x = OnnxBroadcastTo(a, shape), y = OnnxBroadcastTo(b, shape);
-  std::vector<int64_t> equal = a.has_floats() ? EqualPlaces(*x.floats, *y.floats) : EqualPlaces(*x.ints, *y.ints);
+GraphTensor Equal(const GraphTensor& a, const GraphTensor& b, std::vector<int64_t> shape) {
+  const GraphTensor x = BroadcastTo(a, shape), y = BroadcastTo(b, shape);
+  std::vector<int64_t> equal = a.has_floats() ? EqualPlaces(x.floats, y.floats) : EqualPlaces(x.ints, y.ints);
   return {std::move(shape), std::move(equal)};
 }
 
 template <typename Compute>
-OnnxTensor Mapped(const OnnxArguments& arguments, const Compute& compute) {
-  const std::vector<float>& from = arguments.Floats(0);
-  std::vector<float> to(from.size());
+GraphTensor Mapped(const OperatorArguments& arguments, const Compute& compute) {
+  const SharedNumbers<float>& from = arguments.Floats(0);
+  const NewNumbers<float> to = arguments.New<float>(from.size());
   std::transform(from.begin(), from.end(), to.begin(), compute);
-  return {arguments.Input(0).shape, std::move(to)};
+  return {arguments.Input(0).shape, to};
 }
-
-float Sigmoid(float x) { return 1 / (1 + std::exp(-x)); }
 
 /// Numbers before, along and behind an axis: the tensor is before × along × behind.
 struct Split {
@@ -168,12 +172,12 @@ struct Split {
 };
 
 /// Σ, Σ² or the maximum along one axis, which stays with length 1.
-OnnxTensor ReducedAlong(const OnnxTensor& tensor, int axis, char what) {
+GraphTensor ReducedAlong(const GraphTensor& tensor, int axis, char what) {
   const Split n(tensor.shape, axis);
   std::vector<int64_t> shape = tensor.shape;
   shape[size_t(axis)] = 1;
   std::vector<float> result(n.before * n.behind, what == '>' ? -std::numeric_limits<float>::infinity() : 0.0F);
-  const float* from = tensor.floats->data();
+  const float* from = tensor.floats.data();
   for (size_t i = 0; i < n.before; ++i) {
     for (size_t k = 0; k < n.along; ++k) {
       float* to = result.data() + i * n.behind;
@@ -187,71 +191,73 @@ OnnxTensor ReducedAlong(const OnnxTensor& tensor, int axis, char what) {
 
 }  // namespace
 
-std::vector<int64_t> OnnxBroadcastShape(const std::vector<int64_t>& a, const std::vector<int64_t>& b) {
+std::vector<int64_t> BroadcastShape(const std::vector<int64_t>& a, const std::vector<int64_t>& b) {
   const size_t rank = std::max(a.size(), b.size());
   std::vector<int64_t> shape(rank, 1);
   for (size_t i = 0; i < rank; ++i) {
     const int64_t n = i < rank - a.size() ? 1 : a[i - (rank - a.size())];
     const int64_t m = i < rank - b.size() ? 1 : b[i - (rank - b.size())];
     if (n != m && n != 1 && m != 1) {
-      throw std::runtime_error("shapes " + OnnxShapeText(a) + " and " + OnnxShapeText(b) + " do not fit each other");
+      throw std::runtime_error("shapes " + GraphShapeText(a) + " and " + GraphShapeText(b) + " do not fit each other");
     }
     shape[i] = n == 1 ? m : n;
   }
   return shape;
 }
 
-OnnxTensor OnnxBroadcastTo(const OnnxTensor& tensor, const std::vector<int64_t>& shape) {
+GraphTensor BroadcastTo(const GraphTensor& tensor, const std::vector<int64_t>& shape) {
   if (tensor.shape == shape) return tensor;
-  if (OnnxBroadcastShape(tensor.shape, shape) != shape) {
-    throw std::runtime_error(OnnxShapeText(tensor.shape) + " cannot be broadcast to " + OnnxShapeText(shape));
+  if (BroadcastShape(tensor.shape, shape) != shape) {
+    throw std::runtime_error(GraphShapeText(tensor.shape) + " cannot be broadcast to " + GraphShapeText(shape));
   }
-  if (tensor.has_floats()) return {shape, Broadcast(*tensor.floats, tensor.shape, shape)};
-  return {shape, Broadcast(*tensor.ints, tensor.shape, shape)};
+  if (tensor.has_floats()) return {shape, Broadcast(tensor.floats, tensor.shape, shape)};
+  return {shape, Broadcast(tensor.ints, tensor.shape, shape)};
 }
 
-OnnxTensor OnnxBinary(const OnnxArguments& arguments) {
-  const OnnxTensor& a = arguments.Input(0);
-  OnnxTensor b = arguments.Input(1);
+GraphTensor RunBinary(const OperatorArguments& arguments) {
+  const GraphTensor& a = arguments.Input(0);
+  GraphTensor b = arguments.Input(1);
   if (arguments.node().op == "Pow" && a.has_floats() && !b.has_floats()) {
-    b = OnnxTensor(b.shape, std::vector<float>(b.ints->begin(), b.ints->end()));
+    b = GraphTensor(b.shape, std::vector<float>(b.ints.begin(), b.ints.end()));
   }
   RequireAlike(a, b);
-  std::vector<int64_t> shape = OnnxBroadcastShape(a.shape, b.shape);
+  std::vector<int64_t> shape = BroadcastShape(a.shape, b.shape);
   if (arguments.node().op == "Equal") return Equal(a, b, std::move(shape));
   const char op = Letter(arguments.node().op);
-  if (a.has_floats()) {
-    std::vector<float> result = Combined(op, Broadcast(*a.floats, a.shape, shape), *b.floats, b.shape, shape);
-    return {std::move(shape), std::move(result)};
-  }
-  std::vector<int64_t> result = Combined(op, Broadcast(*a.ints, a.shape, shape), *b.ints, b.shape, shape);
-  return {std::move(shape), std::move(result)};
-}
-
-OnnxTensor OnnxWhere(const OnnxArguments& arguments) {
-  RequireAlike(arguments.Input(1), arguments.Input(2));
-  const std::vector<int64_t> shape = OnnxBroadcastShape(
-      arguments.Input(0).shape, OnnxBroadcastShape(arguments.Input(1).shape, arguments.Input(2).shape));
-  const OnnxTensor condition = OnnxBroadcastTo(OnnxTensor(arguments.Input(0).shape, arguments.Ints(0)), shape);
-  const OnnxTensor yes = OnnxBroadcastTo(arguments.Input(1), shape), no = OnnxBroadcastTo(arguments.Input(2), shape);
-  const auto chosen = [&condition](auto result, const auto& other) {
-    for (size_t i = 0; i < result.size(); ++i) {
-      if ((*condition.ints)[i] == 0) result[i] = other[i];
-    }
-    return result;
+  const auto combined = [&]<typename T>(const SharedNumbers<T>& of_a, const SharedNumbers<T>& of_b) {
+    const NewNumbers<T> result = arguments.New<T>(GraphShapeSize(shape));
+    Combine(op, Operands<T>{of_a, of_b, a.shape, b.shape, shape}, result);
+    return GraphTensor(shape, result);
   };
-  if (yes.has_floats()) return {shape, chosen(*yes.floats, *no.floats)};
-  return {shape, chosen(*yes.ints, *no.ints)};
+  return a.has_floats() ? combined(a.floats, b.floats) : combined(a.ints, b.ints);
 }
 
-OnnxTensor OnnxUnary(const OnnxArguments& arguments) {
+GraphTensor RunWhere(const OperatorArguments& arguments) {
+  RequireAlike(arguments.Input(1), arguments.Input(2));
+  const std::vector<int64_t> shape =
+      BroadcastShape(arguments.Input(0).shape, BroadcastShape(arguments.Input(1).shape, arguments.Input(2).shape));
+  const GraphTensor condition = BroadcastTo(GraphTensor(arguments.Input(0).shape, arguments.Ints(0)), shape);
+  const GraphTensor yes = BroadcastTo(arguments.Input(1), shape), no = BroadcastTo(arguments.Input(2), shape);
+  const auto chosen = [&]<typename T>(const SharedNumbers<T>& of_yes, const SharedNumbers<T>& of_no) {
+    const NewNumbers<T> result = arguments.New<T>(of_yes.size());
+    for (size_t i = 0; i < result.size(); ++i) result[i] = condition.ints[i] != 0 ? of_yes[i] : of_no[i];
+    return GraphTensor(shape, result);
+  };
+  return yes.has_floats() ? chosen(yes.floats, no.floats) : chosen(yes.ints, no.ints);
+}
+
+std::pair<float, float> ClipBounds(const OperatorArguments& arguments) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return {arguments.Number("min", 1, -kMost), arguments.Number("max", 2, kMost)};
+}
+
+GraphTensor RunUnary(const OperatorArguments& arguments) {
   const std::string& op = arguments.node().op;
   if (op == "Neg" && !arguments.Input(0).has_floats()) {
-    std::vector<int64_t> values = arguments.Ints(0);
+    std::vector<int64_t> values = arguments.Ints(0).Copy();
     for (int64_t& value : values) value = Wrapped(0 - uint64_t(value));
     return {arguments.Input(0).shape, std::move(values)};
   }
-  if (op == "Sigmoid") return Mapped(arguments, Sigmoid);
   if (op == "Relu") return Mapped(arguments, [](float x) { return std::max(x, 0.0F); });
   if (op == "Tanh") return Mapped(arguments, [](float x) { return std::tanh(x); });
   if (op == "Sqrt") return Mapped(arguments, [](float x) { return std::sqrt(x); });
@@ -268,14 +274,14 @@ OnnxTensor OnnxUnary(const OnnxArguments& arguments) {
     const float alpha = arguments.node().Float("alpha", 0.2F), beta = arguments.node().Float("beta", 0.5F);
     return Mapped(arguments, [=](float x) { return std::clamp(alpha * x + beta, 0.0F, 1.0F); });
   }
-  constexpr float kMost = std::numeric_limits<float>::max();
-  const float low = arguments.Number("min", 1, -kMost), high = arguments.Number("max", 2, kMost);
-  return Mapped(arguments, [=](float x) { return std::min(std::max(x, low), high); });
+  return Mapped(arguments, [bounds = ClipBounds(arguments)](float x) {
+    return std::min(std::max(x, bounds.first), bounds.second);
+  });
 }
 
-OnnxTensor OnnxReduce(const OnnxArguments& arguments) {
+GraphTensor RunReduce(const OperatorArguments& arguments) {
   const std::string& op = arguments.node().op;
-  OnnxTensor result = arguments.FloatInput(0);
+  GraphTensor result = arguments.FloatInput(0);
   const int rank = result.rank();
   std::vector<int64_t> axes = arguments.List("axes", 1);
   if (axes.empty()) {
@@ -285,12 +291,12 @@ OnnxTensor OnnxReduce(const OnnxArguments& arguments) {
   size_t count = 1;
   std::vector<bool> gone(size_t(rank), false);
   for (const int64_t named : axes) {
-    const int axis = OnnxAxis(named, rank);
+    const int axis = AxisAmong(named, rank);
     count *= size_t(result.shape[size_t(axis)]);
     result = ReducedAlong(result, axis, op == "ReduceMax" ? '>' : '+');
     gone[size_t(axis)] = true;
   }
-  std::vector<float> values = *result.floats;
+  std::vector<float> values = result.floats.Copy();
   for (float& value : values) {
     if (op == "ReduceMean") value /= float(count);
     if (op == "ReduceL2") value = std::sqrt(value);
@@ -303,9 +309,9 @@ OnnxTensor OnnxReduce(const OnnxArguments& arguments) {
   return {std::move(shape), std::move(values)};
 }
 
-OnnxTensor OnnxSoftmax(const OnnxArguments& arguments) {
-  const OnnxTensor& input = arguments.Input(0);
-  std::vector<float> values = arguments.Floats(0);
+GraphTensor RunSoftmax(const OperatorArguments& arguments) {
+  const GraphTensor& input = arguments.Input(0);
+  std::vector<float> values = arguments.Floats(0).Copy();
   const Split n(input.shape, arguments.Axis(arguments.opset() < 13 ? 1 : -1, input.rank()));
   if (arguments.opset() < 13 && n.behind > 1) {
     throw std::runtime_error("a softmax over several axes, expected over the last");
@@ -323,42 +329,6 @@ OnnxTensor OnnxSoftmax(const OnnxArguments& arguments) {
     for (size_t k = 0; k < n.along * n.behind; ++k) block[k] /= sum[k % n.behind];
   }
   return {input.shape, std::move(values)};
-}
-
-const OnnxTensor& OnnxArguments::Input(size_t i) const {
-  if (!Has(i)) throw std::runtime_error(Concatenate("input ", i, " is missing"));
-  return *inputs_[i];
-}
-
-const OnnxTensor& OnnxArguments::FloatInput(size_t i) const {
-  const OnnxTensor& input = Input(i);
-  if (!input.has_floats()) throw std::runtime_error(Concatenate("input ", i, " holds whole numbers, expected floats"));
-  return input;
-}
-
-const std::vector<int64_t>& OnnxArguments::Ints(size_t i) const {
-  const OnnxTensor& input = Input(i);
-  if (input.has_floats()) throw std::runtime_error(Concatenate("input ", i, " holds floats, expected whole numbers"));
-  return *input.ints;
-}
-
-std::vector<int64_t> OnnxArguments::List(const std::string& attribute, size_t input) const {
-  return Has(input) ? Ints(input) : node_.Integers(attribute, {});
-}
-
-float OnnxArguments::Number(const std::string& attribute, size_t input, float absent) const {
-  if (!Has(input)) return node_.Float(attribute, absent);
-  const std::vector<float>& values = Floats(input);
-  if (values.size() != 1)
-    throw std::runtime_error(Concatenate("input ", input, ": ", values.size(), " numbers, expected 1"));
-  return values[0];
-}
-
-int OnnxArguments::Axis(int64_t absent, int rank) const { return OnnxAxis(node_.Integer("axis", absent), rank); }
-
-int OnnxAxis(int64_t axis, int rank) {
-  if (axis < -rank || axis >= rank) throw std::runtime_error(Concatenate("axis ", axis, " of ", rank));
-  return int(axis < 0 ? axis + rank : axis);
 }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/detection/inference/tflite_network.h"
+#include "tracking/detection/inference/graph_executor.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@
 #include "tests/data_tools/detection/small_networks.h"
 #include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/detection/tflite_writer.h"
+#include "tracking/detection/inference/tflite_reader.h"
 #include "tracking/detection/inference/tflite_shapes.h"
 
 namespace bodyloom::tflite_network_test {
@@ -20,32 +21,32 @@ namespace {
 
 using Writer = TfliteWriter;
 
-TfliteModel ModelOf(const Writer& writer) { return ParseTfliteModel(writer.Bytes(), "small.tflite"); }
+OperatorGraph ModelOf(const Writer& writer) { return ParseTfliteGraph(writer.Bytes(), "small.tflite"); }
 
-std::vector<float> InputOf(const TfliteModel& model) {
-  return SomeFloats(model.tensors[static_cast<size_t>(model.inputs[0])].size(), 5);
+std::vector<float> InputOf(const OperatorGraph& model) {
+  return SomeFloats(GraphShapeSize(model.tensors[static_cast<size_t>(model.inputs[0])].shape), 5);
 }
 
 /// Runs the network twice (the second time without first-time preparations) and compares all outputs; returns how many
 /// numbers were compared. `largest` is that of the differences relative to the largest number of an output.
 size_t ExpectAsReference(const Writer& writer, const std::string& what, double tolerance = 1e-6) {
-  const TfliteModel model = ModelOf(writer);
+  const OperatorGraph model = ModelOf(writer);
   const std::vector<float> input = InputOf(model);
   const std::vector<std::vector<float>> expected = RunReference(model, input);
-  TfliteNetwork network(model);
+  const GraphExecutor network(model);
   size_t compared = 0;
   for (int run = 0; run < 2; ++run) {
-    const std::vector<TfliteValues> outputs = network.Run(input);
+    const std::vector<GraphTensor> outputs = network.Run(input);
     EXPECT_EQ(outputs.size(), model.outputs.size()) << what;
     for (size_t i = 0; i < outputs.size(); ++i) {
       const auto tensor = static_cast<size_t>(model.outputs[i]);
       EXPECT_EQ(outputs[i].shape, model.tensors[tensor].shape) << what;
       const std::vector<float>& reference = expected[tensor];
-      EXPECT_EQ(outputs[i].values.size(), reference.size()) << what;
+      EXPECT_EQ(outputs[i].floats.size(), reference.size()) << what;
       double largest = 1, difference = 0;
-      for (size_t j = 0; j < std::min(reference.size(), outputs[i].values.size()); ++j, ++compared) {
+      for (size_t j = 0; j < std::min(reference.size(), outputs[i].floats.size()); ++j, ++compared) {
         largest = std::max(largest, std::abs(static_cast<double>(reference[j])));
-        difference = std::max(difference, std::abs(static_cast<double>(reference[j]) - outputs[i].values[j]));
+        difference = std::max(difference, std::abs(static_cast<double>(reference[j]) - outputs[i].floats[j]));
       }
       EXPECT_LE(difference, tolerance * largest) << what << ", output " << i;
     }
@@ -57,7 +58,7 @@ int Strided(int size, int kernel, int stride, bool same) {
   return same ? (size - 1) / stride + 1 : (size - kernel) / stride + 1;
 }
 
-TEST(TfliteNetwork, Convolutions) {
+TEST(TfliteGraphs, Convolutions) {
   size_t compared = 0;
   for (const auto storage : {Writer::Storage::kFloat32, Writer::Storage::kFloat16, Writer::Storage::kSparse}) {
     for (const bool same : {false, true}) {
@@ -81,7 +82,7 @@ TEST(TfliteNetwork, Convolutions) {
   EXPECT_GT(compared, 50'000U);
 }
 
-TEST(TfliteNetwork, DepthwiseConvolutions) {
+TEST(TfliteGraphs, DepthwiseConvolutions) {
   size_t compared = 0;
   for (const bool same : {false, true}) {
     for (const int stride : {1, 2}) {
@@ -103,7 +104,7 @@ TEST(TfliteNetwork, DepthwiseConvolutions) {
   EXPECT_GT(compared, 10'000U);
 }
 
-TEST(TfliteNetwork, Sums) {
+TEST(TfliteGraphs, Sums) {
   Writer writer;
   const int input = writer.Input({1, 4, 6, 3}), conv = writer.Conv(input, {3, 1, 1, 3}, {1, 4, 6, 3}, true, 1);
   const int clamped = writer.Apply(Writer::kAdd, {input, conv}, {1, 4, 6, 3}, {{0, 3}});
@@ -112,7 +113,7 @@ TEST(TfliteNetwork, Sums) {
   ExpectAsReference(writer, "sums");
 }
 
-TEST(TfliteNetwork, PaddingOfRowsAndColumns) {
+TEST(TfliteGraphs, PaddingOfRowsAndColumns) {
   // Even: folded into both convolutions that take it. Uneven, before SAME, before something else, and asked for itself.
   const std::vector<std::vector<int32_t>> paddings = {{0, 0, 1, 1, 2, 2, 0, 0}, {0, 0, 0, 1, 0, 1, 0, 0}};
   for (const std::vector<int32_t>& n : paddings) {
@@ -133,7 +134,7 @@ TEST(TfliteNetwork, PaddingOfRowsAndColumns) {
   }
 }
 
-TEST(TfliteNetwork, PaddingOfChannels) {
+TEST(TfliteGraphs, PaddingOfChannels) {
   Writer writer;
   const int input = writer.Input({1, 4, 5, 3});
   const int pad = writer.Pad(input, {0, 0, 0, 0, 0, 0, 2, 1}, {1, 4, 5, 6});
@@ -143,7 +144,7 @@ TEST(TfliteNetwork, PaddingOfChannels) {
   ExpectAsReference(writer, "channels");
 }
 
-TEST(TfliteNetwork, Resizes) {
+TEST(TfliteGraphs, Resizes) {
   for (const auto& [height, width] : {std::pair{8, 10}, {12, 15}, {4, 10}, {7, 9}, {2, 3}, {2, 5}}) {
     Writer writer;
     const int input = writer.Input({1, 4, 5, 3}), size = writer.Ints({2}, {height, width});
@@ -152,7 +153,7 @@ TEST(TfliteNetwork, Resizes) {
   }
 }
 
-TEST(TfliteNetwork, Pooling) {
+TEST(TfliteGraphs, Pooling) {
   for (const int side : {2, 3}) {
     for (const int stride : {1, 2}) {
       Writer writer;
@@ -165,7 +166,7 @@ TEST(TfliteNetwork, Pooling) {
   }
 }
 
-TEST(TfliteNetwork, ReshapesFollowTheOrderOfTflite) {
+TEST(TfliteGraphs, ReshapesFollowTheOrderOfTflite) {
   Writer writer;
   const int input = writer.Input({1, 4, 6, 5});
   const auto reshape = [&](int from, const std::vector<int32_t>& to, const std::vector<int>& shape) {
@@ -181,7 +182,7 @@ TEST(TfliteNetwork, ReshapesFollowTheOrderOfTflite) {
   ExpectAsReference(writer, "reshapes", 0);
 }
 
-TEST(TfliteNetwork, DepthToSpace) {
+TEST(TfliteGraphs, DepthToSpace) {
   for (const int block : {2, 3}) {
     Writer writer;
     const int input = writer.Input({1, 3, 4, 36});
@@ -191,7 +192,7 @@ TEST(TfliteNetwork, DepthToSpace) {
   }
 }
 
-TEST(TfliteNetwork, ConcatenationAlongEveryAxis) {
+TEST(TfliteGraphs, ConcatenationAlongEveryAxis) {
   for (const int axis : {1, 2, 3, -1}) {
     Writer writer;
     const int input = writer.Input({1, 3, 4, 2});
@@ -210,13 +211,13 @@ TEST(TfliteNetwork, ConcatenationAlongEveryAxis) {
   ExpectAsReference(writer, "rows");
 }
 
-TEST(TfliteNetwork, WholeNetworks) {
+TEST(TfliteGraphs, WholeNetworks) {
   for (const Writer& writer : SmallNetworks()) ExpectAsReference(writer, "whole");
 }
 
 /// Graphs of 30 random operators on one size of image, where tensors are read once, twice or never, soon or late, and
 /// wanted or not: which buffers are shared, and which sums are done in place, differs in each.
-TEST(TfliteNetwork, RandomGraphs) {
+TEST(TfliteGraphs, RandomGraphs) {
   size_t compared = 0;
   for (uint64_t seed = 0; seed < 60; ++seed) {
     HashRandom random(seed, {1});
@@ -257,51 +258,51 @@ TEST(TfliteNetwork, RandomGraphs) {
   EXPECT_GT(compared, 40'000U);
 }
 
-TEST(TfliteNetwork, WhatNoWantedOutputNeedsIsLeftOut) {
-  const TfliteModel model = ModelOf(SmallNetworks()[0]);
+TEST(TfliteGraphs, WhatNoWantedOutputNeedsIsLeftOut) {
+  const OperatorGraph model = ModelOf(SmallNetworks()[0]);
   ASSERT_EQ(model.outputs.size(), 3U);
   const std::vector<float> input = InputOf(model);
-  TfliteNetwork all(model), two(model, {2, 0}), twice(model, {1, 1});
-  EXPECT_EQ(all.num_operators(), static_cast<int>(model.operators.size()));
-  EXPECT_LT(two.num_operators(), all.num_operators());
-  const std::vector<TfliteValues> expected = all.Run(input), outputs = two.Run(input), same = twice.Run(input);
+  GraphExecutor all(model), two(model, {}, {2, 0}), twice(model, {}, {1, 1});
+  EXPECT_EQ(all.num_steps(), 10U) << "11 operators, of which a convolution does the sum";
+  EXPECT_LT(two.num_steps(), all.num_steps());
+  const std::vector<GraphTensor> expected = all.Run(input), outputs = two.Run(input), same = twice.Run(input);
   ASSERT_EQ(outputs.size(), 2U);
-  EXPECT_EQ(outputs[0].values, expected[2].values);
-  EXPECT_EQ(outputs[1].values, expected[0].values);
+  EXPECT_EQ(outputs[0].floats, expected[2].floats);
+  EXPECT_EQ(outputs[1].floats, expected[0].floats);
   ASSERT_EQ(same.size(), 2U);
-  EXPECT_EQ(same[0].values, expected[1].values);
-  EXPECT_EQ(same[1].values, expected[1].values);
+  EXPECT_EQ(same[0].floats, expected[1].floats);
+  EXPECT_EQ(same[1].floats, expected[1].floats);
 }
 
-TEST(TfliteNetwork, OutlivesItsModel) {
-  auto model = std::make_unique<TfliteModel>(ModelOf(SmallNetworks()[0]));
+TEST(TfliteGraphs, OutlivesItsModel) {
+  auto model = std::make_unique<OperatorGraph>(ModelOf(SmallNetworks()[0]));
   const std::vector<float> input = InputOf(*model);
-  TfliteNetwork first(*model), second(*model);
-  const std::vector<TfliteValues> expected = first.Run(input);
+  GraphExecutor first(*model), second(*model);
+  const std::vector<GraphTensor> expected = first.Run(input);
   model.reset();
-  TfliteNetwork moved = std::move(second);
-  const std::vector<TfliteValues> outputs = moved.Run(input);
-  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(outputs[i].values, expected[i].values);
+  GraphExecutor moved = std::move(second);
+  const std::vector<GraphTensor> outputs = moved.Run(input);
+  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(outputs[i].floats, expected[i].floats);
 }
 
-TEST(TfliteNetwork, CopiesShareKernelsAndNothingThatARunChanges) {
-  const TfliteModel model = ModelOf(SmallNetworks()[0]);
+TEST(TfliteGraphs, CopiesShareNothingThatARunChanges) {
+  const OperatorGraph model = ModelOf(SmallNetworks()[0]);
   const std::vector<float> input = InputOf(model), other(input.size(), 0.5F);
-  auto first = std::make_unique<TfliteNetwork>(model);
-  const std::vector<TfliteValues> expected = first->Run(input);
-  TfliteNetwork copy(*first);
-  copy.Run(other);
+  auto first = std::make_unique<GraphExecutor>(model);
+  const std::vector<GraphTensor> expected = first->Run(input);
+  GraphExecutor copy(*first);
+  (void)copy.Run(other);
   first.reset();
-  const std::vector<TfliteValues> outputs = copy.Run(input);
+  const std::vector<GraphTensor> outputs = copy.Run(input);
   ASSERT_EQ(outputs.size(), expected.size());
-  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(outputs[i].values, expected[i].values);
+  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(outputs[i].floats, expected[i].floats);
 }
 
-TEST(TfliteNetwork, TwoThreadsGiveTheBitsOfOne) {
-  const TfliteModel model = ModelOf(SmallNetworks()[0]);
-  TfliteNetwork alone(model);
+TEST(TfliteGraphs, TwoThreadsGiveTheBitsOfOne) {
+  const OperatorGraph model = ModelOf(SmallNetworks()[0]);
+  GraphExecutor alone(model);
   constexpr int kRuns = 40;
-  std::vector<std::vector<TfliteValues>> expected(kRuns);
+  std::vector<std::vector<GraphTensor>> expected(kRuns);
   const auto input = [&](int run) { return SomeFloats(InputOf(model).size(), static_cast<uint32_t>(run)); };
   for (int run = 0; run < kRuns; ++run) expected[static_cast<size_t>(run)] = alone.Run(input(run));
   std::vector<std::thread> threads;
@@ -309,11 +310,11 @@ TEST(TfliteNetwork, TwoThreadsGiveTheBitsOfOne) {
   std::vector<int> different(2, 0);
   for (size_t t = 0; t < 2; ++t) {
     threads.emplace_back([&, t] {
-      TfliteNetwork own = t == 0 ? TfliteNetwork(alone) : TfliteNetwork(model);
+      GraphExecutor own = t == 0 ? GraphExecutor(alone) : GraphExecutor(model);
       for (int run = 0; run < kRuns; ++run) {
-        const std::vector<TfliteValues> outputs = own.Run(input(run));
+        const std::vector<GraphTensor> outputs = own.Run(input(run));
         for (size_t i = 0; i < outputs.size(); ++i) {
-          different[t] += outputs[i].values != expected[static_cast<size_t>(run)][i].values ? 1 : 0;
+          different[t] += outputs[i].floats != expected[static_cast<size_t>(run)][i].floats ? 1 : 0;
         }
       }
     });
@@ -322,18 +323,16 @@ TEST(TfliteNetwork, TwoThreadsGiveTheBitsOfOne) {
   EXPECT_EQ(different, std::vector<int>(2, 0));
 }
 
-TEST(TfliteNetwork, WrongArguments) {
-  const TfliteModel model = ModelOf(SmallNetworks()[0]);
-  EXPECT_THROW(TfliteNetwork(model, {3}), std::invalid_argument);
-  EXPECT_THROW(TfliteNetwork(model, {-1}), std::invalid_argument);
-  TfliteNetwork network(model);
-  EXPECT_THROW(network.Run(std::vector<float>(7)), std::invalid_argument);
-  TfliteModel two = model;
+TEST(TfliteGraphs, WrongArguments) {
+  const OperatorGraph model = ModelOf(SmallNetworks()[0]);
+  EXPECT_THROW(GraphExecutor(model, {}, {3}), std::invalid_argument);
+  EXPECT_THROW(GraphExecutor(model, {}, {-1}), std::invalid_argument);
+  const GraphExecutor network(model);
+  EXPECT_THROW((void)network.Run(std::vector<float>(7)), std::invalid_argument);
+  EXPECT_THROW(GraphExecutor(model, {1, 8, 9, 3}), std::invalid_argument);
+  OperatorGraph two = model;
   two.inputs.push_back(two.inputs[0]);
-  EXPECT_THROW(TfliteNetwork{two}, std::invalid_argument);
-  Writer flat;
-  flat.outputs = {flat.Apply(Writer::kLogistic, {flat.Input({1, 12})}, {1, 12})};
-  EXPECT_THROW(TfliteNetwork{ModelOf(flat)}, std::invalid_argument);
+  EXPECT_THROW(GraphExecutor{two}, std::invalid_argument);
 }
 
 TEST(TfliteShapes, SamePaddingIsTensorFlows) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/detection/inference/onnx_model.h"
+#include "tracking/detection/inference/onnx_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,13 +21,13 @@ using ::testing::HasSubstr;
 using Writer = OnnxWriter;
 
 std::string RefusalOf(const Writer& writer) {
-  return FileErrorOf("net.onnx: ", [&] { ParseOnnxModel(writer.Bytes(), "net.onnx"); });
+  return FileErrorOf("net.onnx: ", [&] { ParseOnnxGraph(writer.Bytes(), "net.onnx"); });
 }
 
 /// One input, one node that passes it on.
 Writer Passing() { return Writer().Input("images", {1, 3, 4, 4}).Node("Identity", {"images"}, {"y"}).Output("y"); }
 
-TEST(OnnxModel, HoldsWhatWasWritten) {
+TEST(OnnxReader, HoldsWhatWasWritten) {
   Writer writer;
   writer.opset = 13;
   writer.Input("images", {-1, 3, 8, -1}).Floats("w", {2, 1}, {1.5F, -2});
@@ -36,20 +36,20 @@ TEST(OnnxModel, HoldsWhatWasWritten) {
                Writer::Text("mode", "nearest"),
                Writer::TensorOf("value", Writer::Tensor<int64_t>("", Writer::kInt64, {}, {7}))});
   writer.Output("y");
-  const OnnxModel model = ParseOnnxModel(writer.Bytes(), "net.onnx");
+  const OperatorGraph model = ParseOnnxGraph(writer.Bytes(), "net.onnx");
   EXPECT_EQ(model.opset, 13);
-  EXPECT_THAT(model.input_shape, ElementsAre(-1, 3, 8, -1));
-  EXPECT_EQ(model.num_tensors, 3);
+  EXPECT_THAT(model.tensors[size_t(model.inputs[0])].shape, ElementsAre(-1, 3, 8, -1));
+  EXPECT_EQ(model.tensors.size(), 3U);
   ASSERT_EQ(model.nodes.size(), 1U);
-  const OnnxNode& node = model.nodes[0];
+  const GraphNode& node = model.nodes[0];
   EXPECT_EQ(node.op, "Clip");
   EXPECT_EQ(node.name, "/Clip");
   ASSERT_EQ(node.inputs.size(), 3U);
-  EXPECT_EQ(node.inputs[0], model.input);
+  EXPECT_EQ(node.inputs[0], model.inputs[0]);
   EXPECT_EQ(node.inputs[1], -1);
-  const OnnxTensor& constant = model.constants.at(node.inputs[2]);
+  const GraphTensor& constant = model.tensors.at(size_t(node.inputs[2])).constant;
   EXPECT_THAT(constant.shape, ElementsAre(2, 1));
-  EXPECT_THAT(*constant.floats, ElementsAre(1.5F, -2));
+  EXPECT_THAT(constant.floats, ElementsAre(1.5F, -2));
   EXPECT_EQ(node.outputs[1], -1);
   EXPECT_THAT(model.outputs, ElementsAre(node.outputs[0]));
   EXPECT_EQ(node.Integer("axis", 5), -1);
@@ -57,10 +57,10 @@ TEST(OnnxModel, HoldsWhatWasWritten) {
   EXPECT_THAT(node.Integers("pads", {}), ElementsAre(1, 2));
   EXPECT_EQ(node.Float("alpha", 0), 0.25F);
   EXPECT_EQ(node.Text("mode", ""), "nearest");
-  EXPECT_THAT(*node.attributes.at("value").tensor.ints, ElementsAre(7));
+  EXPECT_THAT(node.attributes.at("value").tensor.ints, ElementsAre(7));
 }
 
-TEST(OnnxModel, NumbersOfAllKinds) {
+TEST(OnnxReader, NumbersOfAllKinds) {
   Writer writer = Passing();
   writer.graph.Message(5, Writer::Tensor<int32_t>("i32", Writer::kInt32, {2}, {-5, 6}));
   writer.graph.Message(5, Writer::Tensor<uint8_t>("bool", Writer::kBool, {2}, {1, 0}));
@@ -71,33 +71,36 @@ TEST(OnnxModel, NumbersOfAllKinds) {
                               4, {reinterpret_cast<const char*>(packed), sizeof(packed)}));
   writer.graph.Message(
       5, ProtoWriter().Varint(1, 1).Varint(2, 7).Bytes(8, "long").Varint(7, static_cast<uint64_t>(int64_t{-9})));
-  const OnnxModel model = ParseOnnxModel(writer.Bytes(), "net.onnx");
-  std::vector<OnnxTensor> constants;
-  for (const auto& [number, tensor] : model.constants) constants.push_back(tensor);
+  const OperatorGraph model = ParseOnnxGraph(writer.Bytes(), "net.onnx");
+  std::vector<GraphTensor> constants;
+  for (const OperatorGraph::Tensor& tensor : model.tensors) {
+    if (tensor.constant.has_numbers()) constants.push_back(tensor.constant);
+  }
   ASSERT_EQ(constants.size(), 5U);
-  EXPECT_THAT(*constants[0].ints, ElementsAre(-5, 6));
-  EXPECT_THAT(*constants[1].ints, ElementsAre(1, 0));
-  EXPECT_THAT(*constants[2].floats, ElementsAre(1, -2));
-  EXPECT_THAT(*constants[3].floats, ElementsAre(3, 4));
-  EXPECT_THAT(*constants[4].ints, ElementsAre(-9));
+  EXPECT_THAT(constants[0].ints, ElementsAre(-5, 6));
+  EXPECT_THAT(constants[1].ints, ElementsAre(1, 0));
+  EXPECT_THAT(constants[2].floats, ElementsAre(1, -2));
+  EXPECT_THAT(constants[3].floats, ElementsAre(3, 4));
+  EXPECT_THAT(constants[4].ints, ElementsAre(-9));
 }
 
-TEST(OnnxModel, OldFilesListConstantsAmongInputs) {
+TEST(OnnxReader, OldFilesListConstantsAmongInputs) {
   Writer writer = Passing().Floats("w", {1}, {1}).Input("w", {1});
-  EXPECT_THAT(ParseOnnxModel(writer.Bytes(), "net.onnx").input_shape, ElementsAre(1, 3, 4, 4));
+  const OperatorGraph graph = ParseOnnxGraph(writer.Bytes(), "net.onnx");
+  EXPECT_THAT(graph.tensors[size_t(graph.inputs[0])].shape, ElementsAre(1, 3, 4, 4));
 }
 
-TEST(OnnxModel, OtherFilesAreRefused) {
+TEST(OnnxReader, OtherFilesAreRefused) {
   const std::string tflite = TfliteWriter().Bytes();
   for (const std::string& bytes :
        {std::string(), std::string("text"), std::string(100, '\0'), std::string(100, '\xFF'), std::string("{\"a\": 1}"),
         std::string("PK\x03\x04"), std::string("\x89PNG\r\n\x1a\n"), tflite}) {
-    EXPECT_THAT(FileErrorOf("other.onnx", [&] { ParseOnnxModel(bytes, "other.onnx"); }), HasSubstr("not an ONNX file"));
+    EXPECT_THAT(FileErrorOf("other.onnx", [&] { ParseOnnxGraph(bytes, "other.onnx"); }), HasSubstr("not an ONNX file"));
   }
-  FileErrorOf("/no/such.onnx", [] { ReadOnnxModel("/no/such.onnx"); });
+  FileErrorOf("/no/such.onnx", [] { ReadOnnxGraph("/no/such.onnx"); });
 }
 
-TEST(OnnxModel, WhatIsNotReadIsNamed) {
+TEST(OnnxReader, WhatIsNotReadIsNamed) {
   EXPECT_THAT(RefusalOf(Passing().Input("second", {1})), HasSubstr("inputs: 2 of them, expected one picture"));
   EXPECT_THAT(RefusalOf(Passing().Node("Relu", {"nowhere"}, {"z"})),
               HasSubstr("node '/Relu' (Relu): 'nowhere' is not there"));
@@ -122,13 +125,13 @@ TEST(OnnxModel, WhatIsNotReadIsNamed) {
   EXPECT_THAT(RefusalOf(sparse), HasSubstr("sparse constants"));
 }
 
-TEST(OnnxModel, SizesThatLieAreRefused) {
+TEST(OnnxReader, SizesThatLieAreRefused) {
   const auto with = [](const std::vector<int64_t>& shape) {
     Writer writer = Passing();
     writer.graph.Message(5, Writer::Tensor<float>("w", Writer::kFloat, shape, {1, 2, 3}));
     return writer;
   };
-  EXPECT_NO_THROW(ParseOnnxModel(with({3, 1}).Bytes(), "net.onnx"));
+  EXPECT_NO_THROW(ParseOnnxGraph(with({3, 1}).Bytes(), "net.onnx"));
   EXPECT_THAT(RefusalOf(with({4})), HasSubstr("12 bytes, expected 16 for a shape of 4"));
   EXPECT_THAT(RefusalOf(with({-3})), HasSubstr("a tensor of ?"));
   EXPECT_THAT(RefusalOf(with({1 << 20})), HasSubstr("much larger than the file"));
@@ -140,7 +143,7 @@ TEST(OnnxModel, SizesThatLieAreRefused) {
 void ExpectReadOrRefused(const std::string& bytes, int* accepted) {
   const std::vector<char> exact(bytes.begin(), bytes.end());
   try {
-    ParseOnnxModel({exact.data(), exact.size()}, "cut.onnx");
+    ParseOnnxGraph({exact.data(), exact.size()}, "cut.onnx");
     ++*accepted;
   } catch (const std::runtime_error& error) {
     ASSERT_EQ(std::string(error.what()).rfind("cut.onnx: ", 0), 0U) << error.what();
@@ -148,7 +151,7 @@ void ExpectReadOrRefused(const std::string& bytes, int* accepted) {
   }
 }
 
-TEST(OnnxModel, CutAnywhere) {
+TEST(OnnxReader, CutAnywhere) {
   for (const Writer& writer : SmallOnnxNetworks()) {
     const std::string bytes = writer.Bytes();
     int accepted = 0;
@@ -159,7 +162,7 @@ TEST(OnnxModel, CutAnywhere) {
   }
 }
 
-TEST(OnnxModel, BytesChanged) {
+TEST(OnnxReader, BytesChanged) {
   std::mt19937 random(4);
   int accepted = 0, tried = 0;
   for (const Writer& writer : SmallOnnxNetworks()) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/detection/inference/onnx_rearrangement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,44 +7,44 @@
 #include <utility>
 
 #include "geometry/base/check.h"
-#include "tracking/detection/inference/onnx_arithmetic.h"
+#include "tracking/detection/inference/operators.h"
 
 namespace bodyloom {
 namespace {
 
 size_t Product(const std::vector<int64_t>& shape, size_t from, size_t to) {
-  return OnnxShapeSize({shape.begin() + std::ptrdiff_t(from), shape.begin() + std::ptrdiff_t(to)});
+  return GraphShapeSize({shape.begin() + std::ptrdiff_t(from), shape.begin() + std::ptrdiff_t(to)});
 }
 
-/// move(numbers of the input) → numbers of the result, for whichever kind the tensor holds.
+/// move(numbers of the input, room for those of the result), for whichever kind the tensor holds.
 template <typename Move>
-OnnxTensor Moved(const OnnxTensor& tensor, std::vector<int64_t> shape, const Move& move) {
-  if (tensor.has_floats()) return {std::move(shape), move(*tensor.floats)};
-  return {std::move(shape), move(*tensor.ints)};
+GraphTensor Moved(const OperatorArguments& arguments, const GraphTensor& tensor, const std::vector<int64_t>& shape,
+                  const Move& move) {
+  const auto moved = [&]<typename T>(const SharedNumbers<T>& from) {
+    const NewNumbers<T> to = arguments.New<T>(GraphShapeSize(shape));
+    move(from.data(), to.data());
+    return GraphTensor(shape, to);
+  };
+  return tensor.has_floats() ? moved(tensor.floats) : moved(tensor.ints);
 }
 
 /// The numbers at `places` of the input, one behind the other.
-OnnxTensor Picked(const OnnxTensor& tensor, std::vector<int64_t> shape, const std::vector<size_t>& places) {
-  return Moved(tensor, std::move(shape), [&places]<typename T>(const std::vector<T>& from) {
-    std::vector<T> to(places.size());
-    for (size_t i = 0; i < places.size(); ++i) to[i] = from[places[i]];
-    return to;
+GraphTensor Picked(const OperatorArguments& arguments, const GraphTensor& tensor, const std::vector<int64_t>& shape,
+                   const std::vector<size_t>& places) {
+  return Moved(arguments, tensor, shape, [&places](const auto* from, auto* to) {
+    for (const size_t place : places) *to++ = from[place];
   });
 }
 
 /// Along one axis: `count` entries from `begin` on.
-OnnxTensor Part(const OnnxTensor& tensor, int axis, int64_t begin, int64_t count) {
+GraphTensor Part(const OperatorArguments& arguments, const GraphTensor& tensor, int axis, int64_t begin,
+                 int64_t count) {
   std::vector<int64_t> shape = tensor.shape;
   const size_t before = Product(shape, 0, size_t(axis)), behind = Product(shape, size_t(axis) + 1, shape.size());
   const size_t from_row = size_t(shape[size_t(axis)]) * behind, row = size_t(count) * behind;
   shape[size_t(axis)] = count;
-  return Moved(tensor, std::move(shape), [&]<typename T>(const std::vector<T>& from) {
-    std::vector<T> to(before * row);
-    for (size_t i = 0; i < before; ++i) {
-      std::copy_n(from.begin() + std::ptrdiff_t(i * from_row + size_t(begin) * behind), row,
-                  to.begin() + std::ptrdiff_t(i * row));
-    }
-    return to;
+  return Moved(arguments, tensor, shape, [&](const auto* from, auto* to) {
+    for (size_t i = 0; i < before; ++i) std::copy_n(from + i * from_row + size_t(begin) * behind, row, to + i * row);
   });
 }
 
@@ -70,8 +69,8 @@ Taken SliceOf(int64_t begin, int64_t end, int64_t step, int64_t length) {
   return {begin, step, begin > end ? (begin - end - 1) / -step + 1 : 0};
 }
 
-OnnxTensor Sliced(const OnnxTensor& tensor, int axis, const Taken& taken) {
-  if (taken.step == 1) return Part(tensor, axis, taken.begin, taken.count);
+GraphTensor Sliced(const OperatorArguments& arguments, const GraphTensor& tensor, int axis, const Taken& taken) {
+  if (taken.step == 1) return Part(arguments, tensor, axis, taken.begin, taken.count);
   std::vector<int64_t> shape = tensor.shape;
   const size_t before = Product(shape, 0, size_t(axis)), behind = Product(shape, size_t(axis) + 1, shape.size());
   const auto length = size_t(shape[size_t(axis)]);
@@ -83,7 +82,7 @@ OnnxTensor Sliced(const OnnxTensor& tensor, int axis, const Taken& taken) {
       for (size_t j = 0; j < behind; ++j) places.push_back(row * behind + j);
     }
   }
-  return Picked(tensor, std::move(shape), places);
+  return Picked(arguments, tensor, shape, places);
 }
 
 int64_t Found(int64_t index, int64_t length) {
@@ -92,33 +91,33 @@ int64_t Found(int64_t index, int64_t length) {
   return index < 0 ? index + length : index;
 }
 
-std::vector<int64_t> ShapeFor(const OnnxTensor& tensor, std::vector<int64_t> wanted, bool keep_zeros) {
+std::vector<int64_t> ShapeFor(const GraphTensor& tensor, std::vector<int64_t> wanted, bool keep_zeros) {
   int64_t known = 1, open = -1;
   for (size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i] == 0 && !keep_zeros && i < tensor.shape.size()) wanted[i] = tensor.shape[i];
     if (wanted[i] == -1) {
-      if (open >= 0) throw std::runtime_error(OnnxShapeText(wanted) + " leaves two axes open");
+      if (open >= 0) throw std::runtime_error(GraphShapeText(wanted) + " leaves two axes open");
       open = int64_t(i);
     }
   }
   for (const int64_t n : wanted) {
-    if (n != -1) known = int64_t(OnnxShapeSize({known, n}));
+    if (n != -1) known = int64_t(GraphShapeSize({known, n}));
   }
   const auto size = int64_t(tensor.size());
   if (open >= 0 && known > 0 && size % known == 0) wanted[size_t(open)] = size / known;
-  if (std::count(wanted.begin(), wanted.end(), -1) > 0 || int64_t(OnnxShapeSize(wanted)) != size) {
-    throw std::runtime_error(OnnxShapeText(tensor.shape) + " cannot become " + OnnxShapeText(wanted));
+  if (std::count(wanted.begin(), wanted.end(), -1) > 0 || int64_t(GraphShapeSize(wanted)) != size) {
+    throw std::runtime_error(GraphShapeText(tensor.shape) + " cannot become " + GraphShapeText(wanted));
   }
   return wanted;
 }
 
 std::vector<int64_t> Squeezed(const std::vector<int64_t>& shape, const std::vector<int64_t>& axes) {
   std::vector<bool> gone(shape.size(), false);
-  for (const int64_t axis : axes) gone[size_t(OnnxAxis(axis, int(shape.size())))] = true;
+  for (const int64_t axis : axes) gone[size_t(AxisAmong(axis, int(shape.size())))] = true;
   std::vector<int64_t> result;
   for (size_t i = 0; i < shape.size(); ++i) {
     if (axes.empty() ? shape[i] == 1 : bool(gone[i])) {
-      if (shape[i] != 1) throw std::runtime_error(Concatenate("axis ", i, " of ", OnnxShapeText(shape), " is no 1"));
+      if (shape[i] != 1) throw std::runtime_error(Concatenate("axis ", i, " of ", GraphShapeText(shape), " is no 1"));
       continue;
     }
     result.push_back(shape[i]);
@@ -129,7 +128,7 @@ std::vector<int64_t> Squeezed(const std::vector<int64_t>& shape, const std::vect
 std::vector<int64_t> Unsqueezed(const std::vector<int64_t>& shape, const std::vector<int64_t>& axes) {
   const size_t rank = shape.size() + axes.size();
   std::vector<bool> is_new(rank, false);
-  for (const int64_t axis : axes) is_new[size_t(OnnxAxis(axis, int(rank)))] = true;
+  for (const int64_t axis : axes) is_new[size_t(AxisAmong(axis, int(rank)))] = true;
   if (size_t(std::count(is_new.begin(), is_new.end(), true)) != axes.size())
     throw std::runtime_error("an axis is named twice");
   std::vector<int64_t> result;
@@ -140,8 +139,8 @@ std::vector<int64_t> Unsqueezed(const std::vector<int64_t>& shape, const std::ve
 
 }  // namespace
 
-OnnxTensor OnnxConcat(const OnnxArguments& arguments) {
-  const OnnxTensor& first = arguments.Input(0);
+GraphTensor RunConcat(const OperatorArguments& arguments) {
+  const GraphTensor& first = arguments.Input(0);
   const int axis = arguments.Axis(1, first.rank());
   std::vector<int64_t> shape = first.shape;
   shape[size_t(axis)] = 0;
@@ -153,36 +152,30 @@ OnnxTensor OnnxConcat(const OnnxArguments& arguments) {
     std::swap(other[size_t(axis)], shape[size_t(axis)]);
     if (!std::equal(shape.begin(), shape.begin() + axis, other.begin()) ||
         !std::equal(shape.begin() + axis + 1, shape.end(), other.begin() + axis + 1)) {
-      throw std::runtime_error(OnnxShapeText(arguments.Input(i).shape) + " beside " + OnnxShapeText(first.shape));
+      throw std::runtime_error(GraphShapeText(arguments.Input(i).shape) + " beside " + GraphShapeText(first.shape));
     }
     shape[size_t(axis)] += other[size_t(axis)];
   }
   const size_t before = Product(shape, 0, size_t(axis)), behind = Product(shape, size_t(axis), shape.size());
-  const auto joined = [&]<typename T>(auto numbers, std::vector<T>* to) {
-    to->resize(before * behind);
-    size_t start = 0;
-    for (size_t i = 0; i < arguments.num_inputs(); ++i) {
-      const OnnxTensor& input = arguments.Input(i);
-      const size_t row = Product(input.shape, size_t(axis), input.shape.size());
-      const std::vector<T>& from = numbers(input);
-      for (size_t r = 0; r < before; ++r) {
-        std::copy_n(from.begin() + std::ptrdiff_t(r * row), row, to->begin() + std::ptrdiff_t(r * behind + start));
-      }
-      start += row;
-    }
+  size_t start = 0;
+  const auto join = [&](const auto* from, size_t size, auto* to) {
+    const size_t row = before == 0 ? 0 : size / before;
+    for (size_t r = 0; r < before; ++r) std::copy_n(from + r * row, row, to + r * behind + start);
+    start += row;
   };
-  if (first.has_floats()) {
-    std::vector<float> values;
-    joined([](const OnnxTensor& t) -> const std::vector<float>& { return *t.floats; }, &values);
-    return {std::move(shape), std::move(values)};
-  }
-  std::vector<int64_t> values;
-  joined([](const OnnxTensor& t) -> const std::vector<int64_t>& { return *t.ints; }, &values);
-  return {std::move(shape), std::move(values)};
+  return Moved(arguments, first, shape, [&]<typename T>(const T* /*first*/, T* to) {
+    for (size_t i = 0; i < arguments.num_inputs(); ++i) {
+      if constexpr (std::is_same_v<T, float>) {
+        join(arguments.Floats(i).data(), arguments.Floats(i).size(), to);
+      } else {
+        join(arguments.Ints(i).data(), arguments.Ints(i).size(), to);
+      }
+    }
+  });
 }
 
-std::vector<OnnxTensor> OnnxSplit(const OnnxArguments& arguments) {
-  const OnnxTensor& input = arguments.Input(0);
+std::vector<GraphTensor> RunSplit(const OperatorArguments& arguments) {
+  const GraphTensor& input = arguments.Input(0);
   const int axis = arguments.Axis(0, input.rank());
   const int64_t length = input.shape[size_t(axis)];
   std::vector<int64_t> parts = arguments.List("split", 1);
@@ -192,36 +185,35 @@ std::vector<OnnxTensor> OnnxSplit(const OnnxArguments& arguments) {
     for (int64_t i = 0; i < count; ++i) parts.push_back(std::clamp<int64_t>(length - i * each, 0, each));
   }
   int64_t begin = 0;
-  std::vector<OnnxTensor> result;
+  std::vector<GraphTensor> result;
   for (const int64_t part : parts) {
     if (part < 0 || part > length - begin)
       throw std::runtime_error(Concatenate("parts of an axis of ", length, " that do not fit it"));
-    result.push_back(Part(input, axis, begin, part));
+    result.push_back(Part(arguments, input, axis, begin, part));
     begin += part;
   }
   if (begin != length) throw std::runtime_error(Concatenate("parts of ", begin, " for an axis of ", length));
   return result;
 }
 
-OnnxTensor OnnxSlice(const OnnxArguments& arguments) {
-  OnnxTensor result = arguments.Input(0);
+GraphTensor RunSlice(const OperatorArguments& arguments) {
+  GraphTensor result = arguments.Input(0);
   const std::vector<int64_t> begins = arguments.List("starts", 1), ends = arguments.List("ends", 2);
-  std::vector<int64_t> axes = arguments.List("axes", 3),
-                       steps = arguments.Has(4) ? arguments.Ints(4) : std::vector<int64_t>();
+  std::vector<int64_t> axes = arguments.List("axes", 3), steps = arguments.List("", 4);
   for (size_t i = axes.size(); axes.size() < begins.size(); ++i) axes.push_back(int64_t(i));
   steps.resize(std::max(steps.size(), begins.size()), 1);
   if (ends.size() != begins.size() || axes.size() != begins.size() || steps.size() != begins.size()) {
     throw std::runtime_error("starts, ends, axes and steps of different numbers");
   }
   for (size_t i = 0; i < begins.size(); ++i) {
-    const int axis = OnnxAxis(axes[i], result.rank());
-    result = Sliced(result, axis, SliceOf(begins[i], ends[i], steps[i], result.shape[size_t(axis)]));
+    const int axis = AxisAmong(axes[i], result.rank());
+    result = Sliced(arguments, result, axis, SliceOf(begins[i], ends[i], steps[i], result.shape[size_t(axis)]));
   }
   return result;
 }
 
-OnnxTensor OnnxTranspose(const OnnxArguments& arguments) {
-  const OnnxTensor& input = arguments.Input(0);
+GraphTensor RunTranspose(const OperatorArguments& arguments) {
+  const GraphTensor& input = arguments.Input(0);
   const auto rank = size_t(input.rank());
   std::vector<int64_t> order;
   for (size_t i = rank; i-- > 0;) order.push_back(int64_t(i));
@@ -249,13 +241,13 @@ OnnxTensor OnnxTranspose(const OnnxArguments& arguments) {
       at[i] = 0;
     }
   }
-  return Picked(input, std::move(shape), places);
+  return Picked(arguments, input, shape, places);
 }
 
-OnnxTensor OnnxGather(const OnnxArguments& arguments) {
-  const OnnxTensor &input = arguments.Input(0), &index = arguments.Input(1);
+GraphTensor RunGather(const OperatorArguments& arguments) {
+  const GraphTensor &input = arguments.Input(0), &index = arguments.Input(1);
   const int axis = arguments.Axis(0, input.rank());
-  const std::vector<int64_t>& wanted = arguments.Ints(1);
+  const SharedNumbers<int64_t>& wanted = arguments.Ints(1);
   const size_t before = Product(input.shape, 0, size_t(axis)),
                behind = Product(input.shape, size_t(axis) + 1, input.shape.size());
   const int64_t length = input.shape[size_t(axis)];
@@ -263,26 +255,26 @@ OnnxTensor OnnxGather(const OnnxArguments& arguments) {
   shape.insert(shape.end(), index.shape.begin(), index.shape.end());
   shape.insert(shape.end(), input.shape.begin() + axis + 1, input.shape.end());
   std::vector<size_t> places;
-  places.reserve(OnnxShapeSize(shape));
+  places.reserve(GraphShapeSize(shape));
   for (size_t i = 0; i < before; ++i) {
     for (const int64_t entry : wanted) {
       const size_t row = i * size_t(length) + size_t(Found(entry, length));
       for (size_t j = 0; j < behind; ++j) places.push_back(row * behind + j);
     }
   }
-  return Picked(input, std::move(shape), places);
+  return Picked(arguments, input, shape, places);
 }
 
-OnnxTensor OnnxScatterNd(const OnnxArguments& arguments) {
-  const OnnxTensor &input = arguments.Input(0), &index = arguments.Input(1);
-  const std::vector<int64_t>& places = arguments.Ints(1);
+GraphTensor RunScatterNd(const OperatorArguments& arguments) {
+  const GraphTensor &input = arguments.Input(0), &index = arguments.Input(1);
+  const SharedNumbers<int64_t>& places = arguments.Ints(1);
   if (index.rank() == 0 || index.shape.back() < 1 || index.shape.back() > input.rank()) {
-    throw std::runtime_error("places of " + OnnxShapeText(index.shape));
+    throw std::runtime_error("places of " + GraphShapeText(index.shape));
   }
   const auto depth = size_t(index.shape.back());
   const size_t row = Product(input.shape, depth, input.shape.size()), count = places.size() / depth;
-  std::vector<float> values = arguments.Floats(0);
-  const std::vector<float>& updates = arguments.Floats(2);
+  std::vector<float> values = arguments.Floats(0).Copy();
+  const SharedNumbers<float>& updates = arguments.Floats(2);
   if (updates.size() != count * row)
     throw std::runtime_error(Concatenate(updates.size(), " values, expected ", count * row));
   for (size_t i = 0; i < count; ++i) {
@@ -290,48 +282,48 @@ OnnxTensor OnnxScatterNd(const OnnxArguments& arguments) {
     for (size_t k = 0; k < depth; ++k) {
       at = at * size_t(input.shape[k]) + size_t(Found(places[i * depth + k], input.shape[k]));
     }
-    std::copy_n(updates.begin() + std::ptrdiff_t(i * row), row, values.begin() + std::ptrdiff_t(at * row));
+    std::copy_n(updates.begin() + i * row, row, values.begin() + std::ptrdiff_t(at * row));
   }
   return {input.shape, std::move(values)};
 }
 
-OnnxTensor OnnxReshape(const OnnxArguments& arguments) {
-  const OnnxTensor& input = arguments.Input(0);
+GraphTensor RunReshape(const OperatorArguments& arguments) {
+  const GraphTensor& input = arguments.Input(0);
   const std::string& op = arguments.node().op;
   if (op == "Squeeze") return input.Reshaped(Squeezed(input.shape, arguments.List("axes", 1)));
   if (op == "Unsqueeze") return input.Reshaped(Unsqueezed(input.shape, arguments.List("axes", 1)));
   if (op == "Flatten") {
     const int64_t axis = arguments.node().Integer("axis", 1);
-    const size_t at = axis == input.rank() ? size_t(axis) : size_t(OnnxAxis(axis, input.rank()));
+    const size_t at = axis == input.rank() ? size_t(axis) : size_t(AxisAmong(axis, input.rank()));
     return input.Reshaped(
         {int64_t(Product(input.shape, 0, at)), int64_t(Product(input.shape, at, input.shape.size()))});
   }
   return input.Reshaped(ShapeFor(input, arguments.List("shape", 1), arguments.node().Integer("allowzero", 0) != 0));
 }
 
-OnnxTensor OnnxExpand(const OnnxArguments& arguments) {
-  return OnnxBroadcastTo(arguments.Input(0), OnnxBroadcastShape(arguments.Input(0).shape, arguments.Ints(1)));
+GraphTensor RunExpand(const OperatorArguments& arguments) {
+  return BroadcastTo(arguments.Input(0), BroadcastShape(arguments.Input(0).shape, arguments.Ints(1).Copy()));
 }
 
-OnnxTensor OnnxTile(const OnnxArguments& arguments) {
-  OnnxTensor result = arguments.Input(0);
-  const std::vector<int64_t>& times = arguments.Ints(1);
+GraphTensor RunTile(const OperatorArguments& arguments) {
+  GraphTensor result = arguments.Input(0);
+  const SharedNumbers<int64_t>& times = arguments.Ints(1);
   if (int(times.size()) != result.rank())
     throw std::runtime_error(Concatenate(times.size(), " numbers for ", result.rank(), " axes"));
   for (size_t axis = 0; axis < times.size(); ++axis) {
     std::vector<int64_t> shape = result.shape;
     shape.insert(shape.begin() + std::ptrdiff_t(axis), 1);
-    const OnnxTensor open = result.Reshaped(shape);
+    const GraphTensor open = result.Reshaped(shape);
     shape[axis] = times[axis];
-    OnnxShapeSize(shape);
+    GraphShapeSize(shape);
     result.shape[axis] *= times[axis];
-    result = OnnxBroadcastTo(open, shape).Reshaped(result.shape);
+    result = BroadcastTo(open, shape).Reshaped(result.shape);
   }
   return result;
 }
 
-OnnxTensor OnnxCast(const OnnxArguments& arguments) {
-  const OnnxTensor& input = arguments.Input(0);
+GraphTensor RunCast(const OperatorArguments& arguments) {
+  const GraphTensor& input = arguments.Input(0);
   const int64_t type = arguments.node().Integer("to", 0);
   const bool to_floats = type == 1 || type == 10 || type == 11;
   if (!to_floats && type != 6 && type != 7 && type != 9) {
@@ -339,14 +331,14 @@ OnnxTensor OnnxCast(const OnnxArguments& arguments) {
         Concatenate("numbers of type ", type, ", expected float32, float16, int32, int64 or bool"));
   }
   if (to_floats && !input.has_floats()) {
-    return {input.shape, std::vector<float>(input.ints->begin(), input.ints->end())};
+    return {input.shape, std::vector<float>(input.ints.begin(), input.ints.end())};
   }
   if (to_floats) return input;
   std::vector<int64_t> values;
   if (!input.has_floats()) {
-    values = *input.ints;
+    values = input.ints.Copy();
   } else {
-    for (const float value : *input.floats) {
+    for (const float value : input.floats) {
       if (!(std::abs(value) < 9e18F)) throw std::runtime_error("a number too large to be whole");
       values.push_back(type == 9 ? int64_t(value != 0) : int64_t(value));
     }
@@ -357,7 +349,7 @@ OnnxTensor OnnxCast(const OnnxArguments& arguments) {
   return {input.shape, std::move(values)};
 }
 
-OnnxTensor OnnxShapeOf(const OnnxArguments& arguments) {
+GraphTensor RunShapeOf(const OperatorArguments& arguments) {
   const std::vector<int64_t> shape = arguments.Input(0).shape;
   const auto rank = int64_t(shape.size());
   const auto limited = [rank](int64_t at) { return std::clamp<int64_t>(at < 0 ? at + rank : at, 0, rank); };
@@ -366,44 +358,44 @@ OnnxTensor OnnxShapeOf(const OnnxArguments& arguments) {
   return {{end - begin}, std::vector<int64_t>(shape.begin() + begin, shape.begin() + end)};
 }
 
-OnnxTensor OnnxConstant(const OnnxArguments& arguments) {
-  const std::map<std::string, OnnxAttribute>& attributes = arguments.node().attributes;
+GraphTensor RunConstant(const OperatorArguments& arguments) {
+  const std::map<std::string, GraphAttribute>& attributes = arguments.node().attributes;
   const auto value = [&attributes](const char* name) {
     const auto at = attributes.find(name);
     return at == attributes.end() ? nullptr : &at->second;
   };
-  if (const OnnxAttribute* tensor = value("value"); tensor && (tensor->tensor.floats || tensor->tensor.ints)) {
+  if (const GraphAttribute* tensor = value("value"); tensor && tensor->tensor.has_numbers()) {
     return tensor->tensor;
   }
-  if (const OnnxAttribute* number = value("value_float"); number && number->floats.size() == 1) {
+  if (const GraphAttribute* number = value("value_float"); number && number->floats.size() == 1) {
     return {{}, number->floats};
   }
-  if (const OnnxAttribute* number = value("value_int"); number && number->ints.size() == 1) return {{}, number->ints};
-  if (const OnnxAttribute* list = value("value_floats")) return {{int64_t(list->floats.size())}, list->floats};
-  if (const OnnxAttribute* list = value("value_ints")) return {{int64_t(list->ints.size())}, list->ints};
+  if (const GraphAttribute* number = value("value_int"); number && number->ints.size() == 1) return {{}, number->ints};
+  if (const GraphAttribute* list = value("value_floats")) return {{int64_t(list->floats.size())}, list->floats};
+  if (const GraphAttribute* list = value("value_ints")) return {{int64_t(list->ints.size())}, list->ints};
   throw std::runtime_error("a constant without numbers");
 }
 
-OnnxTensor OnnxConstantOfShape(const OnnxArguments& arguments) {
-  const std::vector<int64_t>& shape = arguments.Ints(0);
-  const size_t size = OnnxShapeSize(shape);
+GraphTensor RunConstantOfShape(const OperatorArguments& arguments) {
+  const std::vector<int64_t> shape = arguments.Ints(0).Copy();
+  const size_t size = GraphShapeSize(shape);
   if (!arguments.node().Has("value")) return {shape, std::vector<float>(size, 0.0F)};
-  const OnnxTensor value = OnnxConstant(arguments);
+  const GraphTensor value = RunConstant(arguments);
   if (value.size() != 1) throw std::runtime_error(Concatenate(value.size(), " numbers, expected 1"));
-  if (value.has_floats()) return {shape, std::vector<float>(size, (*value.floats)[0])};
-  return {shape, std::vector<int64_t>(size, (*value.ints)[0])};
+  if (value.has_floats()) return {shape, std::vector<float>(size, value.floats[0])};
+  return {shape, std::vector<int64_t>(size, value.ints[0])};
 }
 
-OnnxTensor OnnxRange(const OnnxArguments& arguments) {
-  const auto range = []<typename T>(const std::vector<T>& begin, const std::vector<T>& end,
-                                    const std::vector<T>& step) {
+GraphTensor RunRange(const OperatorArguments& arguments) {
+  const auto range = []<typename T>(const SharedNumbers<T>& begin, const SharedNumbers<T>& end,
+                                    const SharedNumbers<T>& step) {
     if (begin.size() != 1 || end.size() != 1 || step.size() != 1 || step[0] == 0)
       throw std::runtime_error("a range without an end");
     const double count = std::ceil((double(end[0]) - double(begin[0])) / double(step[0]));
-    const size_t size = OnnxShapeSize({count > 0 ? int64_t(std::min(count, 1e12)) : 0});
+    const size_t size = GraphShapeSize({count > 0 ? int64_t(std::min(count, 1e12)) : 0});
     std::vector<T> values(size);
     for (size_t i = 0; i < size; ++i) values[i] = i == 0 ? begin[0] : T(values[i - 1] + step[0]);
-    return OnnxTensor({int64_t(size)}, std::move(values));
+    return GraphTensor({int64_t(size)}, std::move(values));
   };
   if (arguments.Input(0).has_floats()) return range(arguments.Floats(0), arguments.Floats(1), arguments.Floats(2));
   return range(arguments.Ints(0), arguments.Ints(1), arguments.Ints(2));

@@ -1,0 +1,625 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/detection/inference/tflite_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <stdexcept>
+
+#include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
+#include "tracking/detection/inference/flatbuffer.h"
+#include "tracking/detection/inference/operators.h"
+#include "tracking/detection/inference/tflite_shapes.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr uint32_t kSchemaVersion = 3;
+constexpr size_t kMaxFileBytes = size_t{1} << 28;
+constexpr size_t kMaxTables = 10'000;
+constexpr size_t kMaxRank = 4;
+constexpr size_t kMaxTensor = size_t{1} << 24, kMaxComputed = size_t{1} << 28;
+constexpr size_t kMaxUnpacked = 16;  // bytes of constants a byte of the file
+constexpr size_t kMaxJoined = 64;    // inputs of a CONCATENATION
+constexpr int kMaxWindow = 64;       // of a pooling
+constexpr int kDequantize = 6, kDensify = 124;
+
+// Values of constants as TensorFlow Lite stores them: float32, float16 or int32, dense or sparse.
+
+enum class TfliteType : int8_t { kFloat32 = 0, kFloat16 = 1, kInt32 = 2 };
+
+/// A constant where it lies in the file.
+struct TfliteStored {
+  TfliteType type = TfliteType::kFloat32;
+  std::string_view bytes;
+  std::optional<FlatTable> sparsity;  ///< of a sparse one
+};
+
+/// Bytes of constants that may still be unpacked.
+class TfliteBudget {
+ public:
+  explicit TfliteBudget(size_t bytes) : bytes_(bytes) {}
+  /// Throws std::runtime_error "place: …" when this many bytes are too many.
+  void Take(size_t bytes, const std::string& place) {
+    if (bytes > bytes_) {
+      Refuse(place, "constants of more than 16 times the file's bytes once unpacked, expected at most that");
+    }
+    bytes_ -= bytes;
+  }
+
+ private:
+  size_t bytes_;
+};
+
+/// The numbers that are there, one by one.
+class StoredFloats {
+ public:
+  StoredFloats(const TfliteStored& stored, size_t size, const std::string& place)
+      : half_(stored.type == TfliteType::kFloat16), halves_(stored.bytes), floats_(stored.bytes), place_(place) {
+    const size_t bytes = size * (half_ ? sizeof(uint16_t) : sizeof(float));
+    if (stored.bytes.size() != bytes) {
+      Refuse(place, Concatenate(stored.bytes.size(), " bytes of values, expected ", bytes));
+    }
+  }
+  [[nodiscard]] float operator[](size_t i) const {
+    const float value = half_ ? FloatFromHalf(halves_[i]) : floats_[i];
+    if (!std::isfinite(value)) Refuse(place_, Concatenate("value ", i, " is ", value, ", expected a finite one"));
+    return value;
+  }
+
+ private:
+  bool half_;
+  FlatNumbers<uint16_t> halves_;
+  FlatNumbers<float> floats_;
+  const std::string& place_;
+};
+
+/// Row starts or column numbers: a union of three vectors.
+class SparseIndices {
+ public:
+  SparseIndices(const FlatTable& dimension, int field, const std::string& what, const std::string& place) {
+    kind_ = dimension.Number<uint8_t>(field, 0);
+    const std::optional<FlatTable> table = dimension.Table(field + 1);
+    if (kind_ < 1 || kind_ > 3 || !table) {
+      Refuse(place, Concatenate(what, " of kind ", int{kind_}, ", expected 1 (int32), 2 (uint16) or 3 (uint8)"));
+    }
+    if (kind_ == 1) longs_ = table->Numbers<int32_t>(0);
+    if (kind_ == 2) shorts_ = table->Numbers<uint16_t>(0);
+    if (kind_ == 3) bytes_ = table->Numbers<uint8_t>(0);
+  }
+  [[nodiscard]] size_t size() const { return kind_ == 1 ? longs_.size() : kind_ == 2 ? shorts_.size() : bytes_.size(); }
+  [[nodiscard]] int64_t operator[](size_t i) const {
+    return kind_ == 1 ? int64_t{longs_[i]} : kind_ == 2 ? int64_t{shorts_[i]} : int64_t{bytes_[i]};
+  }
+
+ private:
+  uint8_t kind_;
+  FlatNumbers<int32_t> longs_;
+  FlatNumbers<uint16_t> shorts_;
+  FlatNumbers<uint8_t> bytes_;
+};
+
+/// The compressed last dimension of a sparse constant of this shape, once its others are known to be dense.
+FlatTable CompressedDimension(const FlatTable& sparsity, const std::vector<int64_t>& shape, const std::string& place) {
+  const size_t rank = shape.size();
+  const FlatNumbers<int32_t> order = sparsity.Numbers<int32_t>(0);
+  bool in_order = order.size() == rank;
+  for (size_t i = 0; in_order && i < rank; ++i) in_order = order[i] == static_cast<int32_t>(i);
+  if (!in_order) Refuse(place, "a sparse constant whose axes are reordered, expected them in order");
+  if (sparsity.Numbers<int32_t>(1).size() != 0) Refuse(place, "a sparse constant of blocks, expected single values");
+  const std::vector<FlatTable> dimensions = sparsity.Tables(2, rank);
+  if (dimensions.size() != rank) Refuse(place, Concatenate(dimensions.size(), " sparse axes, expected ", rank));
+  for (size_t i = 0; i < rank; ++i) {
+    const int format = dimensions[i].Number<uint8_t>(0, 0), expected = i + 1 == rank ? 1 : 0;
+    const int size = dimensions[i].Number<int32_t>(1, 0);
+    // The compressed axis is as long as the shape says; writers leave its own number out.
+    if (format != expected || (expected == 0 && size != shape[i])) {
+      Refuse(place, Concatenate("sparse axis ", i, " of format ", format, " and size ", size, ", expected ", expected,
+                                " and ", shape[i]));
+    }
+  }
+  return dimensions.back();
+}
+
+/// Writes the values that are there into zeros.
+void Scatter(const TfliteStored& stored, const std::vector<int64_t>& shape, const std::string& place, float* values) {
+  const FlatTable dimension = CompressedDimension(*stored.sparsity, shape, place);
+  const SparseIndices starts(dimension, 2, "row starts", place), columns(dimension, 4, "column numbers", place);
+  const auto num_columns = static_cast<size_t>(shape.back());
+  const size_t num_rows = GraphShapeSize(shape) / num_columns, count = columns.size();
+  if (starts.size() != num_rows + 1 || starts[0] != 0 || starts[num_rows] != static_cast<int64_t>(count)) {
+    Refuse(place, Concatenate(starts.size(), " row starts for ", num_rows, " rows, expected one more, from 0 to the ",
+                              count, " columns"));
+  }
+  const StoredFloats there(stored, count, place);
+  for (size_t row = 0, i = 0; row < num_rows; ++row) {
+    const int64_t end = starts[row + 1];
+    if (end < static_cast<int64_t>(i) || end > static_cast<int64_t>(count)) {
+      Refuse(place, Concatenate("row ", row, " ends at value ", end, ", expected ", i, " to ", count));
+    }
+    for (int64_t last = -1; i < static_cast<size_t>(end); ++i) {
+      const int64_t column = columns[i];
+      if (column <= last || column >= static_cast<int64_t>(num_columns)) {
+        Refuse(place,
+               Concatenate("column ", column, " in row ", row, ", expected ", last + 1, " to ", num_columns - 1));
+      }
+      values[row * num_columns + static_cast<size_t>(column)] = there[i];
+      last = column;
+    }
+  }
+}
+
+/// The values of a constant of this shape in C order. Throws std::runtime_error "place: what was found, expected what":
+/// another number of bytes than the shape needs, values that are not finite, a sparse layout other than rows of the
+/// last axis or one that does not fit.
+GraphTensor TfliteFloats(const TfliteStored& stored, const std::vector<int64_t>& shape, const std::string& place,
+                         TfliteBudget* budget) {
+  if (stored.type == TfliteType::kInt32) Refuse(place, "a constant of int32, expected float32 or float16");
+  const size_t size = GraphShapeSize(shape);
+  budget->Take(size * sizeof(float), place);
+  const std::shared_ptr<float[]> values = AlignedArray(size);
+  if (stored.sparsity) {
+    std::fill_n(values.get(), size, 0.0F);
+    Scatter(stored, shape, place, values.get());
+  } else {
+    const StoredFloats there(stored, size, place);
+    for (size_t i = 0; i < size; ++i) values[static_cast<ptrdiff_t>(i)] = there[i];
+  }
+  return {shape, SharedNumbers<float>(values, size)};
+}
+
+/// The same for int32; these are never sparse.
+GraphTensor TfliteInts(const TfliteStored& stored, const std::vector<int64_t>& shape, const std::string& place,
+                       TfliteBudget* budget) {
+  const size_t size = GraphShapeSize(shape);
+  if (stored.type != TfliteType::kInt32 || stored.sparsity || stored.bytes.size() != size * sizeof(int32_t)) {
+    Refuse(place,
+           Concatenate(stored.bytes.size(), " bytes of a constant of another type, expected ", size, " of int32"));
+  }
+  budget->Take(size * sizeof(int64_t), place);
+  const FlatNumbers<int32_t> there(stored.bytes);
+  std::vector<int64_t> values(size);
+  for (size_t i = 0; i < size; ++i) values[i] = there[i];
+  return {shape, std::move(values)};
+}
+
+/// What the file calls an operator, and how many inputs it takes. `options` is the number that the union of options has
+/// for its table; 0 where there is none to read.
+struct KnownOperator {
+  TfliteKind kind;
+  int code;
+  const char *name, *op;  ///< the file's, the graph's
+  size_t min_inputs, max_inputs;
+  int options;
+};
+constexpr KnownOperator kKnown[] = {{TfliteKind::kAdd, 0, "ADD", "Add", 2, 2, 11},
+                                    {TfliteKind::kConcatenation, 2, "CONCATENATION", "Concat", 1, kMaxJoined, 10},
+                                    {TfliteKind::kConv2d, 3, "CONV_2D", "Conv", 2, 3, 1},
+                                    {TfliteKind::kDepthwiseConv2d, 4, "DEPTHWISE_CONV_2D", "Conv", 2, 3, 2},
+                                    {TfliteKind::kDepthToSpace, 5, "DEPTH_TO_SPACE", "DepthToSpace", 1, 1, 94},
+                                    {TfliteKind::kLogistic, 14, "LOGISTIC", "Sigmoid", 1, 1, 0},
+                                    {TfliteKind::kMaxPool2d, 17, "MAX_POOL_2D", "MaxPool", 1, 1, 5},
+                                    {TfliteKind::kReshape, 22, "RESHAPE", "Reshape", 2, 2, 0},
+                                    {TfliteKind::kResizeBilinear, 23, "RESIZE_BILINEAR", "Resize", 2, 2, 15},
+                                    {TfliteKind::kPad, 34, "PAD", "Pad", 2, 2, 0}};
+
+/// Whether its second input is an int32 constant.
+bool TakesNumbers(TfliteKind kind) {
+  return kind == TfliteKind::kPad || kind == TfliteKind::kReshape || kind == TfliteKind::kResizeBilinear;
+}
+
+std::string KnownNames() {
+  std::vector<std::string> names;
+  for (const KnownOperator& known : kKnown) names.emplace_back(known.name);
+  return PrintableList(names) + ", DEQUANTIZE or DENSIFY";
+}
+
+/// A tensor as the file describes it.
+struct Description {
+  TfliteType type = TfliteType::kFloat32;
+  TfliteStored stored;    ///< what a folded DEQUANTIZE hands on stays float16 here
+  bool constant = false;  ///< it has values …
+  bool packed = false;    ///< … and is sparse, so that DENSIFY alone may take it
+  bool computed = false;  ///< an input of the network, or written by an operator that was read
+};
+
+class TfliteReader {
+ public:
+  TfliteReader(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), name_(name), budget_(kMaxUnpacked * bytes.size()) {
+    graph_.name = name;
+    graph_.opset = 13;
+    graph_.channels_last = true;
+  }
+
+  OperatorGraph Read() {
+    const FlatTable root = FlatTable::Root(bytes_, "TFL3", name_);
+    if (const auto version = root.Number<uint32_t>(0, 0); version != kSchemaVersion) {
+      Fail("model", Concatenate("schema version ", version, ", expected ", kSchemaVersion));
+    }
+    ReadCodes(root.Tables(1, kMaxTables));
+    const std::vector<FlatTable> graphs = root.Tables(2, kMaxTables);
+    if (graphs.size() != 1) Fail("model", Concatenate(graphs.size(), " subgraphs, expected 1"));
+    ReadTensors(graphs[0].Tables(0, kMaxTables), root.Tables(4, kMaxTables));
+    graph_.inputs = Ends(graphs[0], 1, "inputs");
+    for (const int input : graph_.inputs) {
+      if (descriptions_[input].constant)
+        Fail(TensorPlace(input), "an input of the network that is constant, expected none of its values");
+      MarkComputed(input, TensorPlace(input));
+    }
+    const std::vector<FlatTable> operators = graphs[0].Tables(3, kMaxTables);
+    for (size_t i = 0; i < operators.size(); ++i) ReadOperator(operators[i], i);
+    graph_.outputs = Ends(graphs[0], 2, "outputs");
+    for (const int output : graph_.outputs) {
+      const bool input = std::count(graph_.inputs.begin(), graph_.inputs.end(), output) != 0;
+      if (!descriptions_[output].computed || input) {
+        Fail(TensorPlace(output), "an output of the network that no operator writes, expected one that is computed");
+      }
+    }
+    return std::move(graph_);
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& place, const std::string& message) const {
+    throw std::runtime_error(name_ + ": " + place + ": " + message);
+  }
+
+  [[nodiscard]] std::string TensorPlace(int tensor) const {
+    return Concatenate("tensor ", tensor, " '", graph_.tensors[tensor].name, "'");
+  }
+
+  void ReadCodes(const std::vector<FlatTable>& tables) {
+    for (const FlatTable& table : tables) {
+      codes_.push_back(std::max(int32_t{table.Number<int8_t>(0, 0)}, table.Number<int32_t>(3, 0)));
+      custom_.push_back(PrintableText(table.Bytes(1)));
+    }
+  }
+
+  void ReadTensors(const std::vector<FlatTable>& tables, const std::vector<FlatTable>& buffers) {
+    descriptions_.resize(tables.size());
+    for (size_t i = 0; i < tables.size(); ++i) {
+      OperatorGraph::Tensor& tensor = graph_.tensors.emplace_back();
+      tensor.name = PrintableText(tables[i].Bytes(3));
+      const std::string place = TensorPlace(static_cast<int>(i));
+      const int type = tables[i].Number<uint8_t>(1, 0);
+      if (type > 2) {
+        Fail(place, Concatenate("type ", type, ", expected 0 (float32), 1 (float16) or 2 (int32)"));
+      }
+      if (tables[i].Number<uint8_t>(5, 0) != 0) Fail(place, "a variable, expected a constant or a computed tensor");
+      tensor.shape = Shape(tables[i], place);
+      const auto buffer = tables[i].Number<uint32_t>(2, 0);
+      if (buffer >= buffers.size()) {
+        Fail(place, Concatenate("buffer ", buffer, ", expected less than ", buffers.size()));
+      }
+      Description& description = descriptions_[i];
+      description.type = static_cast<TfliteType>(type);
+      description.stored = {description.type, buffers[buffer].Bytes(0), tables[i].Table(6)};
+      description.constant = !description.stored.bytes.empty();
+      description.packed = description.stored.sparsity.has_value();
+    }
+  }
+
+  [[nodiscard]] std::vector<int64_t> Shape(const FlatTable& table, const std::string& place) const {
+    const FlatNumbers<int32_t> sides = table.Numbers<int32_t>(0), signature = table.Numbers<int32_t>(7);
+    if (sides.size() < 1 || sides.size() > kMaxRank) {
+      Fail(place, Concatenate(sides.size(), " axes, expected 1 to ", kMaxRank));
+    }
+    std::vector<int64_t> shape;
+    size_t size = 1;
+    for (size_t i = 0; i < sides.size(); ++i) {
+      if (i < signature.size() && signature[i] < 0)
+        Fail(place, Concatenate("axis ", i, " is dynamic, expected a size"));
+      if (sides[i] < 1 || static_cast<size_t>(sides[i]) > kMaxTensor / size) {
+        Fail(place, Concatenate("axis ", i, " of size ", sides[i], ", expected 1 or more and at most ", kMaxTensor,
+                                " numbers in all"));
+      }
+      size *= static_cast<size_t>(sides[i]);
+      shape.push_back(sides[i]);
+    }
+    return shape;
+  }
+
+  /// Inputs or outputs of the network.
+  [[nodiscard]] std::vector<int> Ends(const FlatTable& graph, int field, const char* what) const {
+    const FlatNumbers<int32_t> places = graph.Numbers<int32_t>(field);
+    if (places.size() < 1 || places.size() > descriptions_.size()) {
+      Fail("subgraph", Concatenate(places.size(), " ", what, ", expected 1 to ", descriptions_.size()));
+    }
+    std::vector<int> ends;
+    for (size_t i = 0; i < places.size(); ++i) {
+      ends.push_back(Tensor(places[i], "subgraph"));
+      if (descriptions_[ends.back()].type != TfliteType::kFloat32) {
+        Fail(TensorPlace(ends.back()), Concatenate("among the ", what, ", expected float32"));
+      }
+    }
+    return ends;
+  }
+
+  [[nodiscard]] int Tensor(int place, const std::string& where) const {
+    if (place < 0 || place >= static_cast<int>(descriptions_.size())) {
+      Fail(where, Concatenate("tensor ", place, ", expected 0 to ", descriptions_.size() - 1));
+    }
+    return place;
+  }
+
+  void MarkComputed(int tensor, const std::string& place) {
+    if (descriptions_[tensor].computed || descriptions_[tensor].constant) {
+      Fail(place, Concatenate("writes tensor ", tensor,
+                              ", which has its values already, expected one that nothing else writes"));
+    }
+    descriptions_[tensor].computed = true;
+    computed_ += GraphShapeSize(graph_.tensors[tensor].shape);
+    if (computed_ > kMaxComputed) Fail(place, Concatenate("more than ", kMaxComputed, " numbers to compute in all"));
+  }
+
+  void ReadOperator(const FlatTable& table, size_t number) {
+    std::string place = Concatenate("operator ", number);
+    const auto place_of_code = table.Number<uint32_t>(0, 0);
+    if (place_of_code >= codes_.size()) {
+      Fail(place, Concatenate("code ", place_of_code, ", expected less than ", codes_.size()));
+    }
+    const int code = codes_[place_of_code];
+    const FlatNumbers<int32_t> inputs = table.Numbers<int32_t>(1), outputs = table.Numbers<int32_t>(2);
+    if (outputs.size() != 1) Fail(place, Concatenate(outputs.size(), " outputs, expected 1"));
+    const int output = Tensor(outputs[0], place);
+    if (code == kDequantize || code == kDensify) {
+      place += code == kDensify ? " (DENSIFY)" : " (DEQUANTIZE)";
+      if (inputs.size() != 1) Fail(place, Concatenate(inputs.size(), " inputs, expected 1"));
+      Fold(code, Tensor(inputs[0], place), output, place);
+      return;
+    }
+    const auto* known =
+        std::find_if(std::begin(kKnown), std::end(kKnown), [&](const auto& k) { return k.code == code; });
+    if (known == std::end(kKnown)) {
+      Fail(place, Concatenate("operator code ", code,
+                              custom_[place_of_code].empty() ? "" : " '" + custom_[place_of_code] + "'", ", expected ",
+                              KnownNames()));
+    }
+    place += Concatenate(" (", known->name, ")");
+    if (inputs.size() < known->min_inputs || inputs.size() > known->max_inputs) {
+      Fail(place, Concatenate(inputs.size(), " inputs, expected ", known->min_inputs, " to ", known->max_inputs));
+    }
+    TfliteOperator op;
+    op.kind = known->kind;
+    for (size_t i = 0; i < inputs.size(); ++i) {
+      if (inputs[i] == -1 && i == 2) continue;  // no bias
+      op.inputs.push_back(Tensor(inputs[i], place));
+      ResolveInput(op, i, place);
+    }
+    op.output = output;
+    ReadOptions(table, *known, place, &op);
+    CheckOutput(op, place);
+    MarkComputed(output, place);
+    AddNodes(op, known->op, place);
+  }
+
+  /// DEQUANTIZE and DENSIFY: their output is the same constant under another description; what takes it unpacks it.
+  void Fold(int code, int input, int output, const std::string& place) {
+    const Description& from = descriptions_[input];
+    const bool densify = code == kDensify;
+    if (!from.constant || from.packed != densify || from.type == TfliteType::kInt32 ||
+        (!densify && from.type != TfliteType::kFloat16)) {
+      Fail(place, Concatenate("of tensor ", input, ", expected a ", densify ? "sparse" : "dense float16", " constant"));
+    }
+    Description& to = descriptions_[output];
+    const TfliteType expected = densify ? from.type : TfliteType::kFloat32;
+    if (to.constant || to.computed || to.packed || to.type != expected ||
+        graph_.tensors[output].shape != graph_.tensors[input].shape) {
+      Fail(place, Concatenate("into tensor ", output, " of shape ", GraphShapeText(graph_.tensors[output].shape),
+                              ", expected one of shape ", GraphShapeText(graph_.tensors[input].shape), " and type ",
+                              int{static_cast<int8_t>(expected)}, " that nothing else writes"));
+    }
+    to.stored = from.stored;
+    to.constant = true;
+  }
+
+  /// The input that was added last must be what an operator of this kind takes at place `i`; constants are unpacked.
+  void ResolveInput(const TfliteOperator& op, size_t i, const std::string& place) {
+    const int input = op.inputs.back();
+    const Description& description = descriptions_[input];
+    OperatorGraph::Tensor& tensor = graph_.tensors[input];
+    const bool convolution = op.kind == TfliteKind::kConv2d || op.kind == TfliteKind::kDepthwiseConv2d;
+    const bool numbers = TakesNumbers(op.kind);
+    if (i == 0 || !(convolution || numbers)) {
+      if (!description.computed) {
+        Fail(place, Concatenate("input ", i, " is tensor ", input, ", expected one that was computed before"));
+      }
+      return;
+    }
+    const TfliteType expected = numbers ? TfliteType::kInt32 : TfliteType::kFloat32;
+    if (!description.constant || description.packed || description.type != expected) {
+      Fail(place, Concatenate("input ", i, " is tensor ", input, ", expected a dense constant of ",
+                              numbers ? "int32" : "float32"));
+    }
+    const std::string where = name_ + ": " + TensorPlace(input);
+    if (tensor.constant.has_numbers()) return;
+    tensor.constant = numbers ? TfliteInts(description.stored, tensor.shape, where, &budget_)
+                              : TfliteFloats(description.stored, tensor.shape, where, &budget_);
+  }
+
+  void ReadOptions(const FlatTable& table, const KnownOperator& known, const std::string& place, TfliteOperator* op) {
+    if (known.options == 0) return;
+    const int kind = table.Number<uint8_t>(3, 0);
+    const std::optional<FlatTable> options = table.Table(4);
+    if (kind != known.options || !options) {
+      Fail(place, Concatenate("options of kind ", kind, ", expected ", known.options));
+    }
+    const auto window = [&](int stride_w, int stride_h) {
+      const int padding = options->Number<uint8_t>(0, 0);
+      if (padding != 0 && padding != 1)
+        Fail(place, Concatenate("padding ", padding, ", expected 0 (SAME) or 1 (VALID)"));
+      op->same_padding = padding == 0;
+      op->stride_w = options->Number<int32_t>(stride_w, 0);
+      op->stride_h = options->Number<int32_t>(stride_h, 0);
+      if (op->stride_w < 1 || op->stride_w > 2 || op->stride_h < 1 || op->stride_h > 2) {
+        Fail(place, Concatenate("strides ", op->stride_h, " and ", op->stride_w, ", expected 1 or 2"));
+      }
+    };
+    const auto activation = [&](int field) {
+      const int found = options->Number<uint8_t>(field, 0);
+      if (found != 0 && found != 3) Fail(place, Concatenate("activation ", found, ", expected 0 (none) or 3 (relu6)"));
+      op->relu6 = found == 3;
+    };
+    const auto exactly = [&](const char* what, int found, int expected) {
+      if (found != expected) Fail(place, Concatenate(what, " ", found, ", expected ", expected));
+    };
+    const auto sides = [&](int64_t height, int64_t width) {
+      if (std::min(height, width) < 1 || std::max(height, width) > kMaxWindow) {
+        Fail(place, Concatenate("a window of ", height, "x", width, ", expected sides of 1 to ", kMaxWindow));
+      }
+      op->filter_h = static_cast<int>(height);
+      op->filter_w = static_cast<int>(width);
+    };
+    const auto kernel = [&] {
+      const std::vector<int64_t>& shape = graph_.tensors[op->inputs[1]].shape;
+      exactly("axes of the kernel:", static_cast<int>(shape.size()), 4);
+      sides(shape[1], shape[2]);
+    };
+    switch (known.kind) {
+      case TfliteKind::kAdd:
+        activation(0);
+        break;
+      case TfliteKind::kConcatenation:
+        op->axis = options->Number<int32_t>(0, 0);
+        if (op->axis < 0 && op->axis >= -static_cast<int>(kMaxRank)) {
+          op->axis += static_cast<int>(graph_.tensors[op->inputs[0]].shape.size());
+        }
+        activation(1);
+        break;
+      case TfliteKind::kConv2d:
+        window(1, 2);
+        activation(3);
+        exactly("dilation", options->Number<int32_t>(4, 1), 1);
+        exactly("dilation", options->Number<int32_t>(5, 1), 1);
+        kernel();
+        break;
+      case TfliteKind::kDepthwiseConv2d:
+        window(1, 2);
+        exactly("channel multiplier", options->Number<int32_t>(3, 0), 1);
+        activation(4);
+        exactly("dilation", options->Number<int32_t>(5, 1), 1);
+        exactly("dilation", options->Number<int32_t>(6, 1), 1);
+        kernel();
+        break;
+      case TfliteKind::kDepthToSpace:
+        op->block_size = options->Number<int32_t>(0, 0);
+        break;
+      case TfliteKind::kMaxPool2d:
+        window(1, 2);
+        sides(options->Number<int32_t>(4, 0), options->Number<int32_t>(3, 0));
+        activation(5);
+        break;
+      case TfliteKind::kResizeBilinear:
+        exactly("align_corners", options->Number<uint8_t>(2, 0), 0);
+        exactly("half_pixel_centers", options->Number<uint8_t>(3, 0), 1);
+        break;
+      case TfliteKind::kLogistic:
+      case TfliteKind::kPad:
+      case TfliteKind::kReshape:
+        break;
+    }
+  }
+
+  void CheckOutput(const TfliteOperator& op, const std::string& place) const {
+    if (descriptions_[op.output].type != TfliteType::kFloat32) {
+      Fail(place, Concatenate("writes tensor ", op.output, ", expected one of float32"));
+    }
+    const std::vector<int64_t> expected = TfliteOutputShape(graph_, op, name_ + ": " + place);
+    if (graph_.tensors[op.output].shape != expected) {
+      Fail(place, Concatenate("an output of shape ", GraphShapeText(graph_.tensors[op.output].shape), ", expected ",
+                              GraphShapeText(expected)));
+    }
+  }
+
+  /// The operator as the standard's, relu6 as a Clip behind it.
+  void AddNodes(const TfliteOperator& op, const char* name, const std::string& place) {
+    const std::vector<int64_t> in = graph_.tensors[op.inputs[0]].shape, out = graph_.tensors[op.output].shape;
+    GraphNode node;
+    node.name = place;
+    node.op = name;
+    node.inputs = op.inputs;
+    const auto set = [&node](const char* name, std::vector<int64_t> numbers) {
+      node.attributes[name] = GraphAttribute::Ints(std::move(numbers));
+    };
+    switch (op.kind) {
+      case TfliteKind::kAdd:
+      case TfliteKind::kLogistic:
+        break;
+      case TfliteKind::kConcatenation:
+        set("axis", {op.axis});
+        break;
+      case TfliteKind::kConv2d:
+      case TfliteKind::kDepthwiseConv2d:
+        set("strides", {op.stride_h, op.stride_w});
+        if (op.kind == TfliteKind::kDepthwiseConv2d) set("group", {in[3]});
+        if (op.same_padding) {
+          const TflitePads rows = SamePads(static_cast<int>(in[1]), op.filter_h, op.stride_h),
+                           columns = SamePads(static_cast<int>(in[2]), op.filter_w, op.stride_w);
+          set("pads", {rows.before, columns.before, rows.after, columns.after});
+        }
+        break;
+      case TfliteKind::kDepthToSpace:
+        set("blocksize", {op.block_size});
+        break;
+      case TfliteKind::kMaxPool2d:
+        set("kernel_shape", {op.filter_h, op.filter_w});
+        set("strides", {op.stride_h, op.stride_w});
+        break;
+      case TfliteKind::kPad: {
+        const SharedNumbers<int64_t>& n = graph_.tensors[op.inputs[1]].constant.ints;
+        set("pads", {n[0], n[2], n[4], n[6], n[1], n[3], n[5], n[7]});
+        break;
+      }
+      case TfliteKind::kReshape:
+        set("shape", out);
+        break;
+      case TfliteKind::kResizeBilinear:
+        node.attributes["mode"] = GraphAttribute::Text("linear");
+        set("sizes", out);
+        break;
+    }
+    if (TakesNumbers(op.kind)) node.inputs.resize(1);  // they are attributes here
+    node.outputs = {op.output};
+    if (op.relu6) {
+      GraphNode clip;
+      clip.name = place;
+      clip.op = "Clip";
+      clip.inputs = node.outputs = {static_cast<int>(graph_.tensors.size())};
+      clip.outputs = {op.output};
+      clip.attributes["min"] = GraphAttribute::Floats({0});
+      clip.attributes["max"] = GraphAttribute::Floats({6});
+      graph_.tensors.push_back({graph_.tensors[op.output].name + " before relu6", out, {}});
+      graph_.nodes.push_back(std::move(node));
+      node = std::move(clip);
+    }
+    graph_.nodes.push_back(std::move(node));
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  TfliteBudget budget_;
+  OperatorGraph graph_;
+  std::vector<int> codes_;
+  std::vector<std::string> custom_;
+  std::vector<Description> descriptions_;  ///< of each of the file's tensors
+  size_t computed_ = 0;
+};
+
+}  // namespace
+
+OperatorGraph ParseTfliteGraph(std::string_view bytes, const std::string& name) {
+  if (bytes.size() > kMaxFileBytes) {
+    throw std::runtime_error(Concatenate(name, ": ", bytes.size(), " bytes, expected at most ", kMaxFileBytes));
+  }
+  return TfliteReader(bytes, name).Read();
+}
+
+OperatorGraph ReadTfliteGraph(const std::string& path) {
+  return ParseTfliteGraph(ReadFileBytes(path, kMaxFileBytes), path);
+}
+
+}  // namespace bodyloom
