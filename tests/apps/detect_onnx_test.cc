@@ -9,9 +9,9 @@
 #include "apps/usage_error.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/video/image_file.h"
-#include "tests/data_tools/detection/small_onnx.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/tracking/detection/inference/small_onnx.h"
 
 namespace bodyloom::detect_onnx_test {
 namespace {

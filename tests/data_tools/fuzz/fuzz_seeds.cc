@@ -6,8 +6,6 @@
 #include "data_tools/formats/weights_file.h"
 #include "data_tools/formats/zip.h"
 #include "tests/data_tools/body/small_body.h"
-#include "tests/data_tools/detection/small_networks.h"
-#include "tests/data_tools/detection/small_onnx.h"
 #include "tests/data_tools/formats/joblib_stream.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/torch_stream.h"
@@ -15,6 +13,8 @@
 #include "tests/data_tools/fuzz/fuzz_run_seeds.h"
 #include "tests/data_tools/fuzz/fuzz_text_seeds.h"
 #include "tests/fuzz/fuzz_targets.h"
+#include "tests/tracking/detection/inference/small_networks.h"
+#include "tests/tracking/detection/inference/small_onnx.h"
 
 namespace bodyloom::fuzz {
 namespace {

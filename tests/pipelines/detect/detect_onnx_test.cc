@@ -15,9 +15,9 @@
 #include "pipelines/detect/detect_clip.h"
 #include "pipelines/track/track_clip.h"
 #include "pipelines/track/track_people_clip.h"
-#include "tests/data_tools/detection/small_onnx.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
+#include "tests/tracking/detection/inference/small_onnx.h"
 
 namespace bodyloom::detect_onnx_test {
 namespace {

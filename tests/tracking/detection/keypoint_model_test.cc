@@ -7,9 +7,9 @@
 
 #include <fstream>
 
-#include "tests/data_tools/detection/small_onnx.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/tracking/detection/inference/small_onnx.h"
 #include "tracking/detection/frame_detector.h"
 
 namespace bodyloom::keypoint_model_test {

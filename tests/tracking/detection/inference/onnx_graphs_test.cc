@@ -7,9 +7,9 @@
 #include <cmath>
 #include <thread>
 
-#include "tests/data_tools/detection/onnx_writer.h"
-#include "tests/data_tools/detection/small_onnx.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/tracking/detection/inference/onnx_writer.h"
+#include "tests/tracking/detection/inference/small_onnx.h"
 #include "tracking/detection/inference/onnx_reader.h"
 
 namespace bodyloom::onnx_network_test {

@@ -7,10 +7,10 @@
 #include <random>
 
 #include "data_tools/formats/printable.h"
-#include "tests/data_tools/detection/onnx_writer.h"
-#include "tests/data_tools/detection/small_onnx.h"
-#include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/tracking/detection/inference/onnx_writer.h"
+#include "tests/tracking/detection/inference/small_onnx.h"
+#include "tests/tracking/detection/inference/tflite_writer.h"
 
 namespace bodyloom::onnx_model_test {
 namespace {

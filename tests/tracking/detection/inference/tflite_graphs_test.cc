@@ -10,9 +10,9 @@
 
 #include "geometry/base/check.h"
 #include "geometry/base/hash_random.h"
-#include "tests/data_tools/detection/small_networks.h"
-#include "tests/data_tools/detection/tflite_reference.h"
-#include "tests/data_tools/detection/tflite_writer.h"
+#include "tests/tracking/detection/inference/small_networks.h"
+#include "tests/tracking/detection/inference/tflite_reference.h"
+#include "tests/tracking/detection/inference/tflite_writer.h"
 #include "tracking/detection/inference/tflite_reader.h"
 #include "tracking/detection/inference/tflite_shapes.h"
 

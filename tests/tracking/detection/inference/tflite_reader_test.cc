@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "data_tools/formats/atomic_file.h"
-#include "tests/data_tools/detection/small_networks.h"
-#include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
+#include "tests/tracking/detection/inference/small_networks.h"
+#include "tests/tracking/detection/inference/tflite_writer.h"
 
 namespace bodyloom::tflite_model_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/data_tools/detection/onnx_writer.h"
+#include "tests/tracking/detection/inference/onnx_writer.h"
 
 namespace bodyloom {
 

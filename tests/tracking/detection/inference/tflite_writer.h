@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/data_tools/detection/flatbuffer_writer.h"
+#include "tests/tracking/detection/inference/flatbuffer_writer.h"
 
 namespace bodyloom {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/data_tools/detection/tflite_writer.h"
+#include "tests/tracking/detection/inference/tflite_writer.h"
 #include "tracking/detection/inference/tflite_reader.h"
 
 namespace bodyloom {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "geometry/base/check.h"
-#include "tests/data_tools/detection/small_networks.h"
-#include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/tracking/detection/inference/small_networks.h"
+#include "tests/tracking/detection/inference/tflite_writer.h"
 
 namespace bodyloom::tflite_refusals_test {
 namespace {

@@ -8,9 +8,9 @@
 #include <random>
 
 #include "data_tools/formats/printable.h"
-#include "tests/data_tools/detection/small_networks.h"
-#include "tests/data_tools/detection/tflite_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/tracking/detection/inference/small_networks.h"
+#include "tests/tracking/detection/inference/tflite_writer.h"
 
 namespace bodyloom::tflite_damage_test {
 namespace {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "data_tools/formats/atomic_file.h"
-#include "tests/data_tools/detection/tflite_reference.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/tracking/detection/inference/tflite_reference.h"
 #include "tracking/detection/inference/graph_executor.h"
 #include "tracking/detection/inference/tflite_reader.h"
 #include "tracking/detection/model_files.h"
