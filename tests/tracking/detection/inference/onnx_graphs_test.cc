@@ -12,7 +12,7 @@
 #include "tests/tracking/detection/inference/small_onnx.h"
 #include "tracking/detection/inference/onnx_reader.h"
 
-namespace bodyloom::onnx_network_test {
+namespace bodyloom::onnx_graphs_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -121,4 +121,4 @@ TEST(OnnxGraphs, AnotherShapeThanTheModelsIsRefused) {
 }
 
 }  // namespace
-}  // namespace bodyloom::onnx_network_test
+}  // namespace bodyloom::onnx_graphs_test

@@ -12,7 +12,7 @@
 #include "tests/tracking/detection/inference/small_onnx.h"
 #include "tests/tracking/detection/inference/tflite_writer.h"
 
-namespace bodyloom::onnx_model_test {
+namespace bodyloom::onnx_reader_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -178,4 +178,4 @@ TEST(OnnxReader, BytesChanged) {
 }
 
 }  // namespace
-}  // namespace bodyloom::onnx_model_test
+}  // namespace bodyloom::onnx_reader_test

@@ -16,7 +16,7 @@
 #include "tracking/detection/inference/tflite_reader.h"
 #include "tracking/detection/inference/tflite_shapes.h"
 
-namespace bodyloom::tflite_network_test {
+namespace bodyloom::tflite_graphs_test {
 namespace {
 
 using Writer = TfliteWriter;
@@ -356,4 +356,4 @@ TEST(TfliteShapes, SamePaddingIsTensorFlows) {
 }
 
 }  // namespace
-}  // namespace bodyloom::tflite_network_test
+}  // namespace bodyloom::tflite_graphs_test

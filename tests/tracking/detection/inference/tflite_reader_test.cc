@@ -12,7 +12,7 @@
 #include "tests/tracking/detection/inference/small_networks.h"
 #include "tests/tracking/detection/inference/tflite_writer.h"
 
-namespace bodyloom::tflite_model_test {
+namespace bodyloom::tflite_reader_test {
 namespace {
 
 using Writer = TfliteWriter;
@@ -117,4 +117,4 @@ TEST(TfliteReader, ReadsFromAFile) {
 }
 
 }  // namespace
-}  // namespace bodyloom::tflite_model_test
+}  // namespace bodyloom::tflite_reader_test
