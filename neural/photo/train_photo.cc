@@ -44,6 +44,7 @@ class PhotoTrainer : public RendererTrainer {
         config_(options.config),
         scoring_{std::make_shared<const Lpips>(LpipsFrom(options.alexnet, options.lpips_heads)), nullptr,
                  options.ssim} {
+    torch::manual_seed(options.seed);  // whether or not LPIPS drew a substitute for its weights
     if (config_.GuessesUnseen()) guess_.emplace(source.texture_size, source.texel_parts, source.texel_places);
     model_ = PhotoModel(config_);
     discriminator_ = PhotoDiscriminator(config_);
