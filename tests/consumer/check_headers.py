@@ -22,11 +22,8 @@ def faults_of(root, path):
     if INTERNAL.search(path.name):
         yield f"{name}: is internal"
     for bracket, included in INCLUDE.findall(path.read_text(encoding="utf-8")):
-        if included.startswith("bodyloom/"):
-            if not (root / included).is_file():
-                yield f'{name}: includes "{included}", which is not installed'
-        elif bracket == '"':
-            yield f'{name}: includes "{included}", expected "bodyloom/…"'
+        if bracket == '"' and not any((folder / included).is_file() for folder in (root, root / "bodyloom")):
+            yield f'{name}: includes "{included}", which is not installed'
         if PRIVATE.match(included):
             yield f"{name}: includes <{included}>, which a user need not have"
 
