@@ -2,17 +2,15 @@
 #include "tracking/detection/inference/tflite_reader.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <optional>
 #include <stdexcept>
 
 #include "data_tools/formats/atomic_file.h"
-#include "data_tools/formats/ndarray.h"
 #include "data_tools/formats/printable.h"
 #include "geometry/base/check.h"
 #include "tracking/detection/inference/flatbuffer.h"
 #include "tracking/detection/inference/operators.h"
+#include "tracking/detection/inference/tflite_constants.h"
 #include "tracking/detection/inference/tflite_shapes.h"
 
 namespace bodyloom {
@@ -23,169 +21,9 @@ constexpr size_t kMaxFileBytes = size_t{1} << 28;
 constexpr size_t kMaxTables = 10'000;
 constexpr size_t kMaxRank = 4;
 constexpr size_t kMaxTensor = size_t{1} << 24, kMaxComputed = size_t{1} << 28;
-constexpr size_t kMaxUnpacked = 16;  // bytes of constants a byte of the file
-constexpr size_t kMaxJoined = 64;    // inputs of a CONCATENATION
-constexpr int kMaxWindow = 64;       // of a pooling
+constexpr size_t kMaxJoined = 64;  // inputs of a CONCATENATION
+constexpr int kMaxWindow = 64;     // of a pooling
 constexpr int kDequantize = 6, kDensify = 124;
-
-// Values of constants as TensorFlow Lite stores them: float32, float16 or int32, dense or sparse.
-
-enum class TfliteType : int8_t { kFloat32 = 0, kFloat16 = 1, kInt32 = 2 };
-
-/// A constant where it lies in the file.
-struct TfliteStored {
-  TfliteType type = TfliteType::kFloat32;
-  std::string_view bytes;
-  std::optional<FlatTable> sparsity;  ///< of a sparse one
-};
-
-/// Bytes of constants that may still be unpacked.
-class TfliteBudget {
- public:
-  explicit TfliteBudget(size_t bytes) : bytes_(bytes) {}
-  /// Throws std::runtime_error "place: …" when this many bytes are too many.
-  void Take(size_t bytes, const std::string& place) {
-    if (bytes > bytes_) {
-      Refuse(place, "constants of more than 16 times the file's bytes once unpacked, expected at most that");
-    }
-    bytes_ -= bytes;
-  }
-
- private:
-  size_t bytes_;
-};
-
-/// The numbers that are there, one by one.
-class StoredFloats {
- public:
-  StoredFloats(const TfliteStored& stored, size_t size, const std::string& place)
-      : half_(stored.type == TfliteType::kFloat16), halves_(stored.bytes), floats_(stored.bytes), place_(place) {
-    const size_t bytes = size * (half_ ? sizeof(uint16_t) : sizeof(float));
-    if (stored.bytes.size() != bytes) {
-      Refuse(place, Concatenate(stored.bytes.size(), " bytes of values, expected ", bytes));
-    }
-  }
-  [[nodiscard]] float operator[](size_t i) const {
-    const float value = half_ ? FloatFromHalf(halves_[i]) : floats_[i];
-    if (!std::isfinite(value)) Refuse(place_, Concatenate("value ", i, " is ", value, ", expected a finite one"));
-    return value;
-  }
-
- private:
-  bool half_;
-  FlatNumbers<uint16_t> halves_;
-  FlatNumbers<float> floats_;
-  const std::string& place_;
-};
-
-/// Row starts or column numbers: a union of three vectors.
-class SparseIndices {
- public:
-  SparseIndices(const FlatTable& dimension, int field, const std::string& what, const std::string& place) {
-    kind_ = dimension.Number<uint8_t>(field, 0);
-    const std::optional<FlatTable> table = dimension.Table(field + 1);
-    if (kind_ < 1 || kind_ > 3 || !table) {
-      Refuse(place, Concatenate(what, " of kind ", int{kind_}, ", expected 1 (int32), 2 (uint16) or 3 (uint8)"));
-    }
-    if (kind_ == 1) longs_ = table->Numbers<int32_t>(0);
-    if (kind_ == 2) shorts_ = table->Numbers<uint16_t>(0);
-    if (kind_ == 3) bytes_ = table->Numbers<uint8_t>(0);
-  }
-  [[nodiscard]] size_t size() const { return kind_ == 1 ? longs_.size() : kind_ == 2 ? shorts_.size() : bytes_.size(); }
-  [[nodiscard]] int64_t operator[](size_t i) const {
-    return kind_ == 1 ? int64_t{longs_[i]} : kind_ == 2 ? int64_t{shorts_[i]} : int64_t{bytes_[i]};
-  }
-
- private:
-  uint8_t kind_;
-  FlatNumbers<int32_t> longs_;
-  FlatNumbers<uint16_t> shorts_;
-  FlatNumbers<uint8_t> bytes_;
-};
-
-/// The compressed last dimension of a sparse constant of this shape, once its others are known to be dense.
-FlatTable CompressedDimension(const FlatTable& sparsity, const std::vector<int64_t>& shape, const std::string& place) {
-  const size_t rank = shape.size();
-  const FlatNumbers<int32_t> order = sparsity.Numbers<int32_t>(0);
-  bool in_order = order.size() == rank;
-  for (size_t i = 0; in_order && i < rank; ++i) in_order = order[i] == static_cast<int32_t>(i);
-  if (!in_order) Refuse(place, "a sparse constant whose axes are reordered, expected them in order");
-  if (sparsity.Numbers<int32_t>(1).size() != 0) Refuse(place, "a sparse constant of blocks, expected single values");
-  const std::vector<FlatTable> dimensions = sparsity.Tables(2, rank);
-  if (dimensions.size() != rank) Refuse(place, Concatenate(dimensions.size(), " sparse axes, expected ", rank));
-  for (size_t i = 0; i < rank; ++i) {
-    const int format = dimensions[i].Number<uint8_t>(0, 0), expected = i + 1 == rank ? 1 : 0;
-    const int size = dimensions[i].Number<int32_t>(1, 0);
-    // The compressed axis is as long as the shape says; writers leave its own number out.
-    if (format != expected || (expected == 0 && size != shape[i])) {
-      Refuse(place, Concatenate("sparse axis ", i, " of format ", format, " and size ", size, ", expected ", expected,
-                                " and ", shape[i]));
-    }
-  }
-  return dimensions.back();
-}
-
-/// Writes the values that are there into zeros.
-void Scatter(const TfliteStored& stored, const std::vector<int64_t>& shape, const std::string& place, float* values) {
-  const FlatTable dimension = CompressedDimension(*stored.sparsity, shape, place);
-  const SparseIndices starts(dimension, 2, "row starts", place), columns(dimension, 4, "column numbers", place);
-  const auto num_columns = static_cast<size_t>(shape.back());
-  const size_t num_rows = GraphShapeSize(shape) / num_columns, count = columns.size();
-  if (starts.size() != num_rows + 1 || starts[0] != 0 || starts[num_rows] != static_cast<int64_t>(count)) {
-    Refuse(place, Concatenate(starts.size(), " row starts for ", num_rows, " rows, expected one more, from 0 to the ",
-                              count, " columns"));
-  }
-  const StoredFloats there(stored, count, place);
-  for (size_t row = 0, i = 0; row < num_rows; ++row) {
-    const int64_t end = starts[row + 1];
-    if (end < static_cast<int64_t>(i) || end > static_cast<int64_t>(count)) {
-      Refuse(place, Concatenate("row ", row, " ends at value ", end, ", expected ", i, " to ", count));
-    }
-    for (int64_t last = -1; i < static_cast<size_t>(end); ++i) {
-      const int64_t column = columns[i];
-      if (column <= last || column >= static_cast<int64_t>(num_columns)) {
-        Refuse(place,
-               Concatenate("column ", column, " in row ", row, ", expected ", last + 1, " to ", num_columns - 1));
-      }
-      values[row * num_columns + static_cast<size_t>(column)] = there[i];
-      last = column;
-    }
-  }
-}
-
-/// The values of a constant of this shape in C order. Throws std::runtime_error "place: what was found, expected what":
-/// another number of bytes than the shape needs, values that are not finite, a sparse layout other than rows of the
-/// last axis or one that does not fit.
-GraphTensor TfliteFloats(const TfliteStored& stored, const std::vector<int64_t>& shape, const std::string& place,
-                         TfliteBudget* budget) {
-  if (stored.type == TfliteType::kInt32) Refuse(place, "a constant of int32, expected float32 or float16");
-  const size_t size = GraphShapeSize(shape);
-  budget->Take(size * sizeof(float), place);
-  const std::shared_ptr<float[]> values = AlignedArray(size);
-  if (stored.sparsity) {
-    std::fill_n(values.get(), size, 0.0F);
-    Scatter(stored, shape, place, values.get());
-  } else {
-    const StoredFloats there(stored, size, place);
-    for (size_t i = 0; i < size; ++i) values[static_cast<ptrdiff_t>(i)] = there[i];
-  }
-  return {shape, SharedNumbers<float>(values, size)};
-}
-
-/// The same for int32; these are never sparse.
-GraphTensor TfliteInts(const TfliteStored& stored, const std::vector<int64_t>& shape, const std::string& place,
-                       TfliteBudget* budget) {
-  const size_t size = GraphShapeSize(shape);
-  if (stored.type != TfliteType::kInt32 || stored.sparsity || stored.bytes.size() != size * sizeof(int32_t)) {
-    Refuse(place,
-           Concatenate(stored.bytes.size(), " bytes of a constant of another type, expected ", size, " of int32"));
-  }
-  budget->Take(size * sizeof(int64_t), place);
-  const FlatNumbers<int32_t> there(stored.bytes);
-  std::vector<int64_t> values(size);
-  for (size_t i = 0; i < size; ++i) values[i] = there[i];
-  return {shape, std::move(values)};
-}
 
 /// What the file calls an operator, and how many inputs it takes. `options` is the number that the union of options has
 /// for its table; 0 where there is none to read.
@@ -229,8 +67,7 @@ struct Description {
 
 class TfliteReader {
  public:
-  TfliteReader(std::string_view bytes, const std::string& name)
-      : bytes_(bytes), name_(name), budget_(kMaxUnpacked * bytes.size()) {
+  TfliteReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name), budget_(bytes.size()) {
     graph_.name = name;
     graph_.opset = 13;
     graph_.channels_last = true;
