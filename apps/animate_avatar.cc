@@ -33,17 +33,17 @@ void AddAnimateAvatar(CLI::App& animate, Action* action) {
   verb->add_option("--run", request->run, "Folder of the trained run, or its avatar.npz")->required();
   verb->add_option("--track", request->track, "The motion: a track, .npz (default: that of --data)");
   verb->add_option("--data", request->data,
-                   "Pictures to compare with: a single-person dataset, or a video with --track and --mask");
+                   "Images to compare with: a single-person dataset, or a video with --track and --mask");
   verb->add_option("--mask", request->mask, "The person's mask in the video of --data");
   verb->add_option("--out", request->out, "The video, .mp4");
   verb->add_option("--pictures", request->pictures, "A folder for PNGs of the person with transparency")
       ->type_name("DIR");
   verb->add_option("--set", request->set,
-                   "A single-person dataset of the pictures, with the garment's pixels, for `bodyloom metrics`")
+                   "A single-person dataset of the images, with the garment's pixels, for `bodyloom metrics`")
       ->type_name("DIR");
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
   AddShownMotion(verb, {&request->view_yaw, &request->freeze, &request->background, &request->shape_of_track});
-  verb->add_option("--size", request->size, "Pixels of the picture's longer side (default: as the track's)")
+  verb->add_option("--size", request->size, "Pixels of the image's longer side (default: as the track's)")
       ->check(CLI::Range(2, 8192));
   verb->add_option("--ply", request->ply, "The Gaussians at rest, for viewers of 3D Gaussian Splatting, .ply");
   CLI::Option* posed = verb->add_option("--posed-ply", request->posed_ply, "The Gaussians of --ply-frame, posed, .ply");

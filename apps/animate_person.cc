@@ -22,9 +22,9 @@ void RunAnimatePerson(const AnimatePersonRequest& request) {
   if (!person.photos.empty()) {
     std::printf(
         "%.0f %% of the surface is seen, the rest guessed: %.0f %% mirrored, %.0f %% from the other side, "
-        "%.0f %% hair, %.0f %% from around, %.0f %% spread\n",
-        100 * person.seen, 100 * person.mirrored, 100 * person.behind, 100 * person.hair, 100 * person.around,
-        100 * person.spread);
+        "%.0f %% hair, %.0f %% from around the limb, %.0f %% filled smoothly\n",
+        100 * person.seen, 100 * person.mirrored, 100 * person.behind, 100 * person.hair, 100 * person.limb_neighbour,
+        100 * person.smooth_fill);
     if (person.garment_length_m > 0) {
       std::printf("wears a loose garment, %.0f cm long: a skirt, a dress or a coat\n", 100 * person.garment_length_m);
     }
@@ -59,7 +59,7 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
   verb->add_option("--moved-track", request->moved_track,
                    "The motion by this person, .npz: with --body DIR/body.npz for render, export, describe");
   verb->add_flag("--own-stature", request->own_stature,
-                 "As tall in the track's scene as the photos (or --stature) say, not as tall in the picture as whoever "
+                 "As tall in the track's scene as the photos (or --stature) say, not as tall in the image as whoever "
                  "moved there");
   verb->add_option("--view-yaw", request->view_yaw,
                    "Turns the view about the person's vertical, degrees; FROM:TO turns it over the clip");
@@ -69,7 +69,7 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
   verb->add_option("--background", request->background, "Image, video or folder of images behind the person");
   verb->add_option("--relight", request->relight,
                    "Other light: an environment (.png, .jpg) or JSON, as of animate motion (default: the photo's)");
-  verb->add_option("--size", request->size, "Pixels of the picture's longer side (default: as the track's)")
+  verb->add_option("--size", request->size, "Pixels of the image's longer side (default: as the track's)")
       ->check(CLI::Range(2, 8192));
   verb->add_option("--person", fit.person, "Of several people in a photo: 0 is the largest")->capture_default_str();
   verb->add_option("--texture-size", request->photos.texture_size, "Texels a side")->capture_default_str();

@@ -26,7 +26,7 @@ bool TakeSwitch(const std::string& name, const std::string& place, ClipSettings*
   if (found == settings->end()) return false;
   const std::string value = found->second;
   if (value != "true" && value != "false")
-    Refuse(place, name, "found " + PrintableText(value) + ", expected true or false");
+    ThrowFileError(place, name, "found " + PrintableText(value) + ", expected true or false");
   if (value == "false") settings->erase(found);
   return value == "true";
 }
@@ -42,11 +42,11 @@ void Parse(CLI::App* app, const ManifestClip& listed, const std::set<std::string
       continue;
     }
     if (option == nullptr) {
-      Refuse(listed.place, "'" + PrintableText(name) + "' is no option of " + listed.verb +
-                               ", expected one of `bodyloom " + listed.verb + " --help` without its dashes");
+      ThrowFileError(listed.place, "'" + PrintableText(name) + "' is no option of " + listed.verb +
+                                       ", expected one of `bodyloom " + listed.verb + " --help` without its dashes");
     }
     if (IsSwitch(*option) && value != "true" && value != "false") {
-      Refuse(listed.place, name, "found " + PrintableText(value) + ", expected true or false");
+      ThrowFileError(listed.place, name, "found " + PrintableText(value) + ", expected true or false");
     }
     if (IsSwitch(*option) && value == "false") {
       setting = settings->erase(setting);
@@ -59,7 +59,7 @@ void Parse(CLI::App* app, const ManifestClip& listed, const std::set<std::string
   try {
     app->parse(arguments);
   } catch (const CLI::ParseError& error) {
-    Refuse(listed.place, error.what());
+    ThrowFileError(listed.place, error.what());
   }
 }
 
@@ -137,7 +137,7 @@ BatchClip ClipFrom(const ManifestClip& listed, const ClipSettings& common, int n
   try {
     CheckTrackRequest(track);
   } catch (const RequestError& error) {
-    Refuse(listed.place, error.what());
+    ThrowFileError(listed.place, error.what());
   }
   return clip;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Clips of a manifest as requests, by the options of `bodyloom track` and `bodyloom run`.
+/// Converts clips of a manifest to requests, by the options of `bodyloom track` and `bodyloom run`.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,13 @@ class App;
 
 namespace bodyloom {
 
-/// Adds the options of `batch` that hold for all clips: those that `track` and `run` share, and of each the ones that
-/// many clips have in common. Returns what gives, after parsing, those that were given.
+/// Adds the options of `batch` that apply to all clips: those shared by `track` and `run`, and those of either that are
+/// often common to many clips. Returns a function that gives, after parsing, the options that were set.
 std::function<ClipSettings()> AddClipOptions(CLI::App& verb);
 
-/// The request of a clip: its own settings, and of those for all clips the ones that its verb has and it does not give
-/// itself; without `threads` among them it takes `num_threads`. Throws std::runtime_error naming the manifest's line
-/// when its verb has no such option, a value is none of the option's, or options contradict each other.
+/// Makes the request of a clip from its own settings and, for options that its verb has and it does not set, from those
+/// for all clips; without `threads` among them it uses `num_threads`. Throws std::runtime_error naming the manifest's
+/// line for an option that the verb does not have, an invalid value, or contradictory options.
 BatchClip ClipFrom(const ManifestClip& listed, const ClipSettings& common, int num_threads);
 
 }  // namespace bodyloom

@@ -12,7 +12,7 @@ class App;
 
 namespace bodyloom {
 
-/// --detector, --detect-rate, --models, --pose-model and --box-model, in this group of the help.
+/// Adds --detector, --detect-rate, --models, --pose-model and --box-model, in this group of the help.
 void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group);
 
 }  // namespace bodyloom

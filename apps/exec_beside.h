@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Hands a verb over to another executable that lies beside this one.
+/// Hands a verb over to another executable in the same folder.
 #pragma once
 
 #include <filesystem>
@@ -8,17 +8,15 @@
 
 namespace bodyloom {
 
-/// Path of the executable called `name` in this one's folder, whether it is there or not.
+/// Path of the executable `name` in this executable's folder, whether or not it exists.
 std::filesystem::path ProgramBeside(const std::string& name);
 
-/// Replaces this process by that executable with these arguments. Returns only when it is not there; throws
+/// Replaces this process by that executable with these arguments. Returns only if it does not exist; throws
 /// std::runtime_error when it cannot be started.
 void ExecBeside(const std::string& name, const std::vector<std::string>& arguments);
 
-// Hands a verb over to the executable that is linked with LibTorch.
-
-/// Replaces this process by `bodyloom-neural` with these arguments. Returns only by throwing std::runtime_error: it is
-/// not there, or cannot be started.
+/// Replaces this process by `bodyloom-neural`, which is linked with LibTorch, with these arguments. Throws
+/// std::runtime_error if it does not exist or cannot be started; never returns otherwise.
 [[noreturn]] void ExecNeural(const std::vector<std::string>& arguments);
 
 }  // namespace bodyloom

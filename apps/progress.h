@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Progress on stderr: a bar with the time left on a terminal, a plain line now and then anywhere else.
+/// Progress on stderr: a bar with the remaining time on a terminal, otherwise a line from time to time.
 #pragma once
 
 #include <chrono>
@@ -15,10 +15,10 @@ class Progress {
  public:
   enum class Style { kBar, kLines, kSilent };
 
-  /// On stderr.
+  /// Writes to stderr.
   explicit Progress(std::string title, Style style = DefaultStyle());
   Progress(std::string title, Style style, std::ostream& out);
-  /// Finishes the line of a bar.
+  /// Ends the line of a bar.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -26,11 +26,11 @@ class Progress {
   /// kBar when stderr is a terminal, else kLines.
   static Style DefaultStyle();
 
-  /// `fraction` of the whole in [0, 1]; a smaller one than before is taken for the one before. A bar is redrawn at most
-  /// ten times a second; a line is written when the stage changes and every ten seconds.
+  /// Reports the `fraction` of the whole in [0, 1]; decreasing values are ignored. A bar is redrawn at most ten times a
+  /// second; a line is written when the stage changes and every ten seconds.
   void Update(const std::string& stage, double fraction);
 
-  /// Takes a bar off the screen, so that a line can be printed; the next Update() may draw it again.
+  /// Erases the bar so that a line can be printed; the next Update() may draw it again.
   void Wipe();
 
  private:
@@ -46,23 +46,23 @@ class Progress {
   size_t drawn_width_ = 0;
 };
 
-// Ctrl-C without half files: the first SIGINT or SIGTERM raises a flag that long work polls, the second one kills.
+// Interruption without partial files: the first SIGINT or SIGTERM sets a flag that long jobs poll, the second one kills
+// the process.
 
 /// Installs the handlers, and ignores SIGPIPE and SIGXFSZ so that a closed pipe or a file-size limit becomes a write
-/// error with a message instead of a silent death.
+/// error with a message instead of terminating the process silently.
 void InstallSignalHandlers();
 
 [[nodiscard]] bool IsInterrupted();
 
-// Callbacks of the command: a pipeline's reports on a terminal, progress on stderr, messages as lines; Ctrl-C cancels
-// it.
+// Callbacks of the command: progress on stderr, messages as lines, cancellation by Ctrl-C.
 
-/// Work that has a name (PipelineCallbacks::begin) gets a bar or lines on stderr (apps/progress.h), nothing when
-/// `quiet`; work without one shows nothing. A raised interrupt flag (apps/progress.h) cancels the job. Messages go to
-/// `messages`, which must outlive the callbacks. The bar is wiped when the last copy of the callbacks goes.
+/// Named jobs (PipelineCallbacks::begin) get a bar or lines on stderr (apps/progress.h), unless `quiet`; unnamed jobs
+/// show nothing. The interrupt flag (apps/progress.h) cancels the job. Messages go to `messages`, which must outlive
+/// the callbacks. The bar is erased when the last copy of the callbacks is destroyed.
 PipelineCallbacks CommandCallbacks(bool quiet = false, std::ostream& messages = std::cout);
 
-/// The answer of `job(request, callbacks)`, run under a bar of this title, which is gone when it returns.
+/// Returns `job(request, callbacks)`, run with a bar of this title that is erased when the job returns.
 template <class Job, class Request>
 auto RunWithBar(const std::string& title, const Job& job, const Request& request) {
   const PipelineCallbacks callbacks = CommandCallbacks();

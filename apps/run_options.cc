@@ -15,7 +15,7 @@ void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--person", request->person, "only this one: 0 is the largest and longest in view")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--least-seconds", request->least_seconds, "whoever is seen for less is left out")
+  app.add_option("--min-seconds", request->min_seconds, "whoever is seen for less is left out")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   app.add_option("--fps", track.fps, "frame rate of a folder of images (default 30)")->check(CLI::PositiveNumber);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The flags of `bodyloom run` but those of its outputs.
+/// Options of `bodyloom run`, except those of its outputs.
 #pragma once
 
 #include "pipelines/track/track_people_clip.h"
@@ -10,7 +10,7 @@ class App;
 
 namespace bodyloom {
 
-/// Binds the fields of the request but `out`, `overlay` and `report` to their flags; VIDEO is a positional too.
+/// Binds the fields of the request except `out`, `overlay` and `report` to their options; VIDEO is also positional.
 void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request);
 
 }  // namespace bodyloom

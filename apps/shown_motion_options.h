@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options of `bodyloom animate …` that say how a motion is shown.
+/// Options of `bodyloom animate …` that define how a motion is shown.
 #pragma once
 
 #include <string>
@@ -12,16 +12,16 @@ class App;
 
 namespace bodyloom {
 
-/// --view-yaw.
+/// Adds --view-yaw.
 void AddViewYaw(CLI::App* verb, std::string* view_yaw);
 
-/// Where the options of a person who was trained on go.
+/// Targets of the options for a trained person.
 struct ShownMotionArguments {
   std::string *view_yaw, *freeze, *background;
   bool* shape_of_track;
 };
 
-/// --view-yaw, --shape, --freeze, --background.
+/// Adds --view-yaw, --shape, --freeze, --background.
 void AddShownMotion(CLI::App* verb, const ShownMotionArguments& shown);
 
 }  // namespace bodyloom
@@ -32,7 +32,7 @@ class App;
 
 namespace bodyloom {
 
-/// --velocity, --window, --longest-step, --frame, --cameras, --view: the axes and velocities of a surface's motion.
+/// Adds --velocity, --window, --longest-step, --frame, --cameras, --view: axes and velocities of the surface's motion.
 void AddSurfaceMotionOptions(CLI::App* verb, SurfaceMotion* motion, std::string* cameras, std::string* view);
 
 }  // namespace bodyloom

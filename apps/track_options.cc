@@ -84,7 +84,7 @@ void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
       ->type_name("N")
       ->check(Quiet(CLI::NonNegativeNumber));
   app.add_option("--camera-path-fps", c.camera_path_fps,
-                 "pictures a second that the path's frames number (default: they are the clip's frames)")
+                 "images a second that the path's frames number (default: they are the clip's frames)")
       ->group(kCamera)
       ->check(Quiet(CLI::PositiveNumber));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The flags of `bodyloom track`, and those groups of them that other verbs that track have too.
+/// Options of `bodyloom track`, in groups that are shared with other verbs that track.
 #pragma once
 
 #include <string>
@@ -12,16 +12,17 @@ class App;
 
 namespace bodyloom {
 
-/// Those of AddDetectorOptions(), --no-mask, --from and --to, in this group of the help.
+/// Adds those of AddDetectorOptions(), --no-mask, --from and --to, in this group of the help.
 void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& group);
-/// --cameras and --focal.
+/// Adds --cameras and --focal.
 void AddCalibrationOptions(CLI::App& app, TrackSettings* request);
-/// --body, --stature, --prior and --lifter.
+/// Adds --body, --stature, --prior and --lifter.
 void AddLearnedOptions(CLI::App& app, TrackSettings* request);
-/// --solver, --threads, --max-iterations, --straight-knees and the switches that leave something out.
+/// Adds --solver, --threads, --max-iterations, --straight-knees and the switches that disable parts of the tracker.
 void AddSolveOptions(CLI::App& app, TrackSettings* request);
 
-/// Binds every field of the request to its flag; defaults in --help are those of the struct. `quiet` is the verb's own.
+/// Binds every field of the request to its option; defaults in --help are those of the struct. `quiet` is the verb's
+/// own.
 void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet);
 
 }  // namespace bodyloom

@@ -27,13 +27,13 @@ void RunTrainAvatar(const TrainAvatarRequest& request) {
     std::printf("a garment %.0f cm long was found and is simulated; %d Gaussians lie on it\n",
                 100 * summary.garment_length_m, summary.cloth);
   }
-  if (summary.landing_step > 0) {
+  if (summary.cooldown_step > 0) {
     std::cout << "ended early: more steps no longer helped the frames held out; --all-steps goes on\n";
   }
   if (summary.training) std::cout << "frames learned from, " << ScoresText(*summary.training) << "\n";
   if (summary.validation) std::cout << "frames held out, " << ScoresText(*summary.validation) << "\n";
   if (summary.validation_refined) {
-    std::cout << "the same after their poses were refined on these very pictures, "
+    std::cout << "the same after their poses were refined on these very images, "
               << ScoresText(*summary.validation_refined) << "\n";
   }
   if (summary.stopped) std::cout << "stopped; go on by --resume\n";
@@ -83,7 +83,7 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
                  "Correct the poses of the frames learned from while the person is learned");
   verb->add_option(
       "--refined-track", request->refined_track,
-      "In the end correct the poses of all frames, held-out ones too, by their pictures and write the track");
+      "In the end correct the poses of all frames, held-out ones too, by their images and write the track");
   verb->add_option("--refine-rounds", request->refine_rounds, "How often each frame comes for --refined-track")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

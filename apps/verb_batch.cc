@@ -55,7 +55,7 @@ void RunBatchCommand(const BatchCommand& command, const ClipSettings& common) {
   const RunBatchReport report = RunBatch(request, callbacks);
   progress.Wipe();
   if (report.clips.contains(ClipStatus::kFailed)) throw CommandEnded(kExitFailed, ToText(report));
-  if (report.clips.contains(ClipStatus::kNothingToTrack)) throw CommandEnded(kExitNothingToTrack, ToText(report));
+  if (report.clips.contains(ClipStatus::kNoPersonFound)) throw CommandEnded(kExitNoPersonFound, ToText(report));
   if (!command.quiet) std::cerr << ToText(report) << "\n";
 }
 

@@ -15,14 +15,14 @@ namespace {
 
 constexpr const char* kMetricsFooter =
     "What is compared:\n"
-    "  two folders of pictures     matched by name without extension\n"
+    "  two folders of images     matched by name without extension\n"
     "  two videos                  frame by frame\n"
     "  two single-person datasets  images/, labels/ (grey, 0 to 6) and normals/ (n = 2c/255 - 1), each by its own\n"
     "                              metrics, as far as both have them\n"
     "SSIM is never one number; docs/image_metrics.md says what each preset is and who uses it. --mask adds PSNR "
     "inside\n"
     "the mask, bounds the normals, and gives --preset neuralbody its box; other presets look at the whole picture.\n"
-    "Means and standard deviations are over frames; frames of equal pictures (PSNR inf) are counted apart.\n"
+    "Means and standard deviations are over frames; frames of equal images (PSNR inf) are counted apart.\n"
     "Do clothes react to motion? --other-truth and --other-result are single-person datasets of the same poses at\n"
     "another speed (synth-person --speed; --set of animate motion, animate avatar); how the garment changes from\n"
     "speed to speed is compared with how it should.\n"
@@ -33,7 +33,7 @@ constexpr const char* kMetricsFooter =
 }  // namespace
 
 void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> arguments, MoreMetrics more) {
-  CLI::App* verb = app.add_subcommand("metrics", "Compares pictures with the truth: PSNR, SSIM, labels, normals");
+  CLI::App* verb = app.add_subcommand("metrics", "Compares images with the truth: PSNR, SSIM, labels, normals");
   verb->footer(std::string(kMetricsFooter) + kExitCodeHelp);
   auto request = std::make_shared<CompareResultsRequest>();
   auto quiet = std::make_shared<bool>(false);
@@ -57,13 +57,13 @@ void AddMetricsVerb(CLI::App& app, Action* action, std::vector<std::string> argu
   verb->add_flag("--common", c.common_only, "compare the frames that both folders have, instead of asking for all");
   verb->add_option("--json", c.json, "also write the means as JSON")->type_name("FILE");
   verb->add_option("--csv", c.csv, "also write a line a frame")->type_name("FILE");
-  CLI::Option* pictures = verb->add_option(
+  CLI::Option* images = verb->add_option(
       "--pictures", c.pictures, "folder: of every pair of images truth, result and error in colours, side by side");
-  pictures->type_name("DIR");
-  verb->add_option("--error-max", c.error_maximum, "of the pictures: error of the last colour, grey levels")
+  images->type_name("DIR");
+  verb->add_option("--error-max", c.error_maximum, "of the images: error of the last colour, grey levels")
       ->check(CLI::PositiveNumber)
       ->type_name("NUMBER")
-      ->needs(pictures)
+      ->needs(images)
       ->capture_default_str();
   verb->add_option("--threads", c.num_threads, "0: all cores; numbers are the same for any number")
       ->check(CLI::Range(0, 256))

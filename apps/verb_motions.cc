@@ -28,7 +28,7 @@ constexpr const char* kMotionsFooter =
 }  // namespace
 
 void AddMotionsVerb(CLI::App& app, Action* action) {
-  CLI::App* verb = app.add_subcommand("motions", "Collects motions for training: quality, classes, split, pictures");
+  CLI::App* verb = app.add_subcommand("motions", "Collects motions for training: quality, classes, split, images");
   verb->footer(std::string(kMotionsFooter) + kExitCodeHelp);
   auto request = std::make_shared<SurveyMotionsRequest>();
   SurveyMotionsRequest& c = *request;

@@ -17,7 +17,7 @@ constexpr const char* kRenderFooter =
     "  overlay  the body, shaded, over the video or in a studio with a floor\n"
     "  iuv      chart coordinates: red u, green v, blue the part   parts   DensePose's 24 charts in colours\n"
     "  normal   the surface's direction in the camera frame        depth   metres: warm near, cold far\n"
-    "  texture  a picture in the body's UV atlas (--texture), on the body\n"
+    "  texture  an image in the body's UV atlas (--texture), on the body\n"
     "  error    how far each vertex is from another track's (--truth): violet 0, yellow --error-max and more\n"
     "What is written, by the ending of --out:\n"
     "  .mp4     every frame                 .png    a contact sheet of up to 12 frames, to judge a run at a glance\n"
@@ -76,8 +76,8 @@ void AddRenderVerb(CLI::App& app, Action* action) {
       ->type_name("DEG");
   verb->add_flag(
       "--turntable", c.turntable,
-      "that camera makes one full turn over the frames (one frame: the pose is held, 120 pictures or 12 cells)");
-  verb->add_option("--texture", c.texture, "for --what texture: the picture, laid out in the body's atlas")
+      "that camera makes one full turn over the frames (one frame: the pose is held, 120 images or 12 cells)");
+  verb->add_option("--texture", c.texture, "for --what texture: the image, laid out in the body's atlas")
       ->type_name("FILE");
   verb->add_option("--truth", c.truth, "for --what error: the track to compare with, .npz")->type_name("FILE");
   verb->add_option("--error-unit", arguments->unit,
@@ -88,7 +88,7 @@ void AddRenderVerb(CLI::App& app, Action* action) {
       ->check(CLI::PositiveNumber)
       ->type_name("NUMBER");
   verb->add_option("--json", c.json, "what was done, for a program")->type_name("FILE");
-  verb->add_option("--threads", c.num_threads, "0: all cores; pictures are the same for any number")
+  verb->add_option("--threads", c.num_threads, "0: all cores; images are the same for any number")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   verb->add_flag("--quiet", arguments->quiet, "only errors");

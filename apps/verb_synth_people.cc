@@ -38,7 +38,7 @@ void SynthPeople(const SynthPeopleArguments& arguments) {
 }  // namespace
 
 void AddSynthPeopleVerb(CLI::App& app, Action* action) {
-  CLI::App* verb = app.add_subcommand("synth-people", "Makes pictures of many dressed people with known truth");
+  CLI::App* verb = app.add_subcommand("synth-people", "Makes images of many dressed people with known truth");
   verb->footer(std::string(kSynthPeopleFooter) + kExitCodeHelp);
   auto arguments = std::make_shared<SynthPeopleArguments>();
   SynthesizePeopleRequest& c = arguments->request;
@@ -51,10 +51,10 @@ void AddSynthPeopleVerb(CLI::App& app, Action* action) {
   verb->add_option("--views", c.set.views, "cameras around each action")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  verb->add_option("--frames", c.set.frames, "pictures of an action and view")
+  verb->add_option("--frames", c.set.frames, "images of an action and view")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  verb->add_option("--every", c.set.every, "frames of the motion (30 a second) from one picture to the next")
+  verb->add_option("--every", c.set.every, "frames of the motion (30 a second) from one image to the next")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb->add_option("--test-share", c.set.test_share, "of the people, kept for testing")

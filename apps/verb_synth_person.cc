@@ -27,7 +27,7 @@ constexpr const char* kSynthPersonFooter =
 
 struct SynthPersonArguments {
   SynthesizePersonRequest request;
-  std::string garment = "skirt", clothes = "patterned", stuff = "cotton", light_style = "studio";
+  std::string garment = "skirt", clothes = "patterned", material = "cotton", light_style = "studio";
   bool quiet = false;
 };
 
@@ -35,7 +35,7 @@ void SynthPerson(const SynthPersonArguments& arguments) {
   SynthesizePersonRequest request = arguments.request;
   request.set.garment = GarmentKindFromString(arguments.garment);
   request.set.style = ClothesStyleFromString(arguments.clothes);
-  request.set.stuff = ClothStuffFromString(arguments.stuff);
+  request.set.material = ClothMaterialFromString(arguments.material);
   request.set.light_style = LightStyleFromString(arguments.light_style);
   const SynthesizePersonReport report = SynthesizePerson(request, CommandCallbacks(arguments.quiet));
   if (!arguments.quiet) std::cout << ToText(report);
@@ -44,7 +44,7 @@ void SynthPerson(const SynthPersonArguments& arguments) {
 }  // namespace
 
 void AddSynthPersonVerb(CLI::App& app, Action* action) {
-  CLI::App* verb = app.add_subcommand("synth-person", "Makes pictures of a dressed person with known truth");
+  CLI::App* verb = app.add_subcommand("synth-person", "Makes images of a dressed person with known truth");
   verb->footer(std::string(kSynthPersonFooter) + kExitCodeHelp);
   auto arguments = std::make_shared<SynthPersonArguments>();
   SynthesizePersonRequest& c = arguments->request;
@@ -57,7 +57,7 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
   verb->add_option("--clothes", arguments->clothes, "patterned, or everyday: mostly plain, wide and loose among them")
       ->check(CLI::IsMember({"patterned", "everyday"}))
       ->capture_default_str();
-  verb->add_option("--stuff", arguments->stuff,
+  verb->add_option("--material", arguments->material,
                    "of a loose garment: cotton, silk (light, many folds) or denim (heavy, stiff)")
       ->check(CLI::IsMember({"cotton", "silk", "denim"}))
       ->capture_default_str();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// 2D detections of a clip become a track: a pose in every frame, one shape, the camera.
+// Fits a body to the 2D detections of a clip: a pose in every frame, one shape, and the camera.
 //   01_track DETECTIONS TRACK.npz
 #include <iostream>
 

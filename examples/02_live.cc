@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames go in one by one, as a camera and a detector would bring them; each comes out `lag` frames later.
+// Tracks frames one by one, as from a camera with a detector; each is returned `lag` frames later.
 //   02_live DETECTIONS
 #include <iostream>
 

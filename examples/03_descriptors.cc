@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the surface of a tracked body lies and moves, as maps over its UV atlas, in memory.
+// Computes normals and velocities of a tracked body's surface as maps over its UV atlas, in memory.
 //   03_descriptors TRACK.npz
 #include <algorithm>
 #include <iostream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame of a track as a picture: the body from the camera that saw it, and from its side.
-//   04_render TRACK.npz PICTURE.png
+// Renders a frame of a track to an image: the body from the clip's camera, and from its side.
+//   04_render TRACK.npz IMAGE.png
 #include <iostream>
 
 #include "bodyloom/data_tools/body/builtin_body.h"
@@ -10,7 +10,7 @@
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::cerr << "usage: 04_render TRACK.npz PICTURE.png\n";
+    std::cerr << "usage: 04_render TRACK.npz IMAGE.png\n";
     return 2;
   }
   const bodyloom::Track track = bodyloom::ReadTrack(argv[1]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body of your own (SMPL, SMPL-H or SMPL-X, the official .pkl or .npz) is fitted instead of the built-in one.
+// Fits a body of your own (SMPL, SMPL-H or SMPL-X, the official .pkl or .npz) instead of the built-in one.
 //   05_own_body BODY DETECTIONS TRACK.npz
 #include <iostream>
 

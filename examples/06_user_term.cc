@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A term of your own, as a plain Ceres cost function: a point of the left wrist's skin 15 cm above where the clip shows
-// it, and a shape that should be near.
+// Adds a term of your own, as a plain Ceres cost function: it pulls a point of the left wrist's skin to 15 cm above its
+// position in the clip, and the first shape component to 1.
 #include <ceres/autodiff_cost_function.h>
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The problem behind a track as a ceres::Problem: what each term costs, which blocks pull most, solved by Ceres with
-// the lifter's weight doubled, and how well the result determines a knee.
+// Builds the ceres::Problem of a track: prints the cost of each term and the residual blocks of highest cost, solves it
+// by Ceres with the lifter's weight doubled, and prints the uncertainty of a knee.
 #include <ceres/ceres.h>
 
 #include <algorithm>

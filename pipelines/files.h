@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Checks of the files a job was given, made before the long work rather than after it.
+/// Checks of a job's input and output files, made before any long computation.
 #pragma once
 
 #include <cstddef>
@@ -8,23 +8,21 @@
 
 namespace bodyloom {
 
-/// Throws std::runtime_error "path: ..." unless `path` is there and can be read (file or folder). Empty paths pass: an
-/// option that was not given. `what` names the option's meaning, as in "detections".
+/// Throws std::runtime_error "path: ..." unless `path` exists and is readable (file or folder). Empty paths, of options
+/// not given, pass. `what` names the option's meaning, as in "detections".
 void RequireReadable(const std::string& path, const std::string& what);
 
-/// Throws std::runtime_error "path: ..." unless a file could be written at `path`: its folder is there, is writable and
-/// has room, and `path` is no folder. Leaves whatever stands there untouched. Empty paths pass.
+/// Throws std::runtime_error "path: ..." unless a file could be written at `path`: its folder exists, is writable and
+/// has free space, and `path` is not a folder. Existing files are left untouched. Empty paths pass.
 void RequireWritable(const std::string& path);
 
-/// Creates the folder `path` (and those above it) when it is not there, and requires it to be writable.
+/// Creates the folder `path` and its parents if missing, and requires it to be writable.
 void RequireWritableFolder(const std::string& path);
 
 /// Throws RequestError when an output is the same file as an input or as another output. Empty paths are ignored.
 void RequireDistinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-// Peak memory of a job.
-
-/// Largest resident size of this process so far, bytes.
+/// Maximum resident size of this process so far, bytes.
 size_t PeakMemoryBytes();
 
 }  // namespace bodyloom

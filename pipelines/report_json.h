@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Reports of the jobs as JSON.
+/// JSON output shared by the reports of all jobs.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

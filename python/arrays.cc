@@ -20,7 +20,7 @@ std::string ShapeText(const py::array& array) { return py::str(py::tuple(array.a
 
 std::string TypeText(const py::handle& value) { return py::str(py::type::handle_of(value).attr("__name__")); }
 
-/// What NumPy makes of the value; raises TypeError when it can make nothing of it.
+/// Converts the value by numpy.asarray(); raises TypeError when this fails.
 py::array AsArray(const py::handle& value, const std::string& name, const std::string& expected) {
   try {
     return py::module_::import("numpy").attr("asarray")(value);
@@ -103,7 +103,7 @@ py::array ArrayOwning(std::vector<T> values, std::vector<py::ssize_t> shape) {
   return py::array_t<T>(std::move(shape), data, owner);
 }
 
-py::array PictureFrom(Image image) {
+py::array ArrayFromImage(Image image) {
   SwapRedAndBlue(image.bgr.data(), image.bgr.size() / 3);
   return ArrayOwning(std::move(image.bgr), {image.height, image.width, 3});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// NumPy arrays in and out: what comes in is checked and named when it is refused, what goes out is a view.
+/// Conversion of NumPy arrays: inputs are checked, with errors that name them; outputs are views.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -16,7 +16,7 @@ namespace bodyloom::python {
 
 namespace py = pybind11;
 
-/// One axis of an expected shape: so many, or any number under a name ("T").
+/// One axis of an expected shape: a fixed size, or any size under a name ("T").
 struct Extent {
   py::ssize_t size = -1;
   std::string name;
@@ -27,16 +27,16 @@ struct Extent {
 template <typename T>
 using RowMajorArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-/// What NumPy makes of `value` (an array, a list of lists, …), as T in C order; copied only when it is not that
-/// already. Raises TypeError when it holds no real numbers and ValueError when it has another shape, both in one line:
-/// "points: expected numbers of shape (T, K, 3), found shape (5, 17)".
+/// Converts `value` (an array, a list of lists, …) to an array of T in C order, without a copy if it is one already.
+/// Raises TypeError if it is not real numbers and ValueError if it has another shape, both in one line: "points:
+/// expected numbers of shape (T, K, 3), found shape (5, 17)".
 template <typename T>
 RowMajorArray<T> NumbersFrom(const py::handle& value, const char* name, const std::vector<Extent>& shape);
 
-/// A picture: uint8, height × width × 3, red green blue. Raises as NumbersFrom() for anything else.
+/// Converts an image: uint8, height × width × 3, RGB. Raises as NumbersFrom() for anything else.
 Image ImageFrom(const py::handle& value, const char* name);
 
-/// The same memory as an array that cannot be written to; `owner` stays alive as long as the array does.
+/// Read-only array that shares the memory; `owner` is kept alive as long as the array.
 template <typename T>
 py::array View(const T* data, std::vector<py::ssize_t> shape, const py::handle& owner);
 /// The same with strides in bytes.
@@ -44,14 +44,14 @@ template <typename T>
 py::array View(const T* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                const py::handle& owner);
 
-/// Values moved into an array that owns them.
+/// Moves values into an array that owns them.
 template <typename T>
 py::array ArrayOwning(std::vector<T> values, std::vector<py::ssize_t> shape);
 
-/// Height × width × 3, red green blue, with the image's memory.
-py::array PictureFrom(Image image);
+/// Array of height × width × 3, RGB, that takes over the image's memory.
+py::array ArrayFromImage(Image image);
 
-/// Rows or a vector of a dynamic Eigen matrix, viewed.
+/// View of a dynamic Eigen matrix or vector.
 template <typename Matrix>
 py::array MatrixView(const Matrix& matrix, const py::handle& owner) {
   static_assert(Matrix::IsRowMajor || Matrix::IsVectorAtCompileTime, "rows of a view are contiguous");
@@ -62,7 +62,7 @@ py::array MatrixView(const Matrix& matrix, const py::handle& owner) {
   }
 }
 
-/// The pose of NumPy's memory as Eigen sees it.
+/// Copies a vector of this size from NumPy. Raises as NumbersFrom().
 Eigen::VectorXd VectorFrom(const py::handle& value, const char* name, const Extent& size);
 
 }  // namespace bodyloom::python

@@ -30,7 +30,7 @@ constexpr const char* kAvatarDoc =
     "    people = bodyloom.run(\"clip.mp4\", out=\"people\", people=1, masks=True)\n"
     "    avatar = bodyloom.Avatar.train(\"clip.mp4\", track=\"people/person_0.npz\", mask=\"people/mask_0.npz\", "
     "out=\"run\")\n"
-    "    picture = avatar.show(\"dance.npz\", view_yaw=\"30\").picture(0)";
+    "    image = avatar.show(\"dance.npz\", view_yaw=\"30\").image(0)";
 constexpr const char* kTrainDoc =
     "Learns a person and leaves the run in a folder (`bodyloom train avatar`); needs no LibTorch.\n\n"
     "data: a video or folder of images with its track and the person's mask, or a single-person dataset. out: the\n"
@@ -43,7 +43,7 @@ constexpr const char* kShowDoc =
     "The person in a motion, to be drawn frame by frame; a garment is simulated along all of it first.\n\n"
     "view_yaw: degrees, \"30\", or \"0:360\" over the frames. freeze: where time stands still, FRAME:COUNT. size: "
     "pixels of\n"
-    "the picture's longer side; None: as the track's. keep_shape: the track's shape in the place of the person's.\n"
+    "the image's longer side; None: as the track's. keep_shape: the track's shape in the place of the person's.\n"
     "Raises ValueError, RuntimeError, Cancelled.";
 constexpr const char* kAnimateDoc =
     "Files of the person in a motion (`bodyloom animate avatar`): out, a video; pictures, a folder of PNGs with\n"
@@ -51,7 +51,7 @@ constexpr const char* kAnimateDoc =
     "video or a folder behind the person. The rest is as of show(). Files appear whole or not at all.";
 constexpr const char* kShownDoc =
     "A person in a motion: Avatar.show() makes it. Two threads may share it: the second waits.";
-constexpr const char* kShownPictureDoc =
+constexpr const char* kShownImageDoc =
     "One frame: (height, width, 4) uint8, red green blue with straight alpha; a frame that the track has lost is\n"
     "transparent. Raises ValueError for a frame that there is not.";
 
@@ -63,18 +63,18 @@ class ShownObject {
 
   [[nodiscard]] const ShownAvatar& shown() const { return shown_; }
 
-  py::array Picture(int frame) {
+  py::array Draw(int frame) {
     BODYLOOM_CHECK(frame >= 0 && frame < shown_.num_frames(), "frame ", frame, " is outside the motion's ",
                    shown_.num_frames(), " frames");
     const int width = shown_.width(), height = shown_.height();
-    std::vector<uint8_t> picture(4 * size_t(width) * size_t(height), 0);
+    std::vector<uint8_t> image(4 * size_t(width) * size_t(height), 0);
     if (shown_.HasResult(frame)) {
       const py::gil_scoped_release unlocked;
       const std::lock_guard<std::mutex> one_at_a_time(mutex_);
-      picture = WithAlpha(shown_.Draw(frame), width, height);
-      for (size_t i = 0; i < picture.size(); i += 4) std::swap(picture[i], picture[i + 2]);  // red first
+      image = WithAlpha(shown_.Draw(frame), width, height);
+      for (size_t i = 0; i < image.size(); i += 4) std::swap(image[i], image[i + 2]);  // red first
     }
-    return ArrayOwning(std::move(picture), {height, width, 4});
+    return ArrayOwning(std::move(image), {height, width, 4});
   }
 
  private:
@@ -140,17 +140,17 @@ std::shared_ptr<ShownObject> Show(const AvatarObject& self, const TrackArgument&
 }
 
 void Animate(const AvatarObject& self, const TrackArgument& argument, const std::optional<Path>& out,
-             const std::optional<Path>& pictures, const std::optional<Path>& report, const std::optional<Path>& ply,
+             const std::optional<Path>& images, const std::optional<Path>& report, const std::optional<Path>& ply,
              const std::optional<Path>& background, const std::string& view_yaw, const std::string& freeze,
              std::optional<int> size, bool keep_shape, int threads, const py::object& progress) {
   CheckThreads(threads);
   CheckSize(size);
-  BODYLOOM_CHECK(out || pictures || report || ply, "out, pictures, report, ply: nothing is to be written");
+  BODYLOOM_CHECK(out || images || report || ply, "out, pictures, report, ply: nothing is to be written");
   const std::shared_ptr<TrackObject> track = TrackFrom(argument);
   AnimateAvatarRequest request;
   request.motion = &track->track;
   request.track = track->name;
-  request.out = TextOf(out), request.pictures = TextOf(pictures), request.report = TextOf(report);
+  request.out = TextOf(out), request.pictures = TextOf(images), request.report = TextOf(report);
   request.ply = TextOf(ply), request.background = TextOf(background);
   request.view_yaw = view_yaw, request.freeze = freeze, request.size = size.value_or(0);
   request.shape_of_track = keep_shape;
@@ -163,7 +163,7 @@ void Animate(const AvatarObject& self, const TrackArgument& argument, const std:
 
 void BindAvatar(py::module_& module) {
   py::class_<ShownObject, std::shared_ptr<ShownObject>>(module, "ShownAvatar", kShownDoc)
-      .def("picture", &ShownObject::Picture, py::arg("frame"), kShownPictureDoc)
+      .def("image", &ShownObject::Draw, py::arg("frame"), kShownImageDoc)
       .def_property_readonly(
           "width", [](const ShownObject& self) { return self.shown().width(); }, "Pixels.")
       .def_property_readonly(

@@ -71,7 +71,7 @@ poses (3J,) radians, trans (3,) metres and betas (B,) as a LiveFrame has them; p
 lost, all maps are zero and the next pose begins anew. Raises ValueError, and changes nothing, when the time does not
 grow or the pose is not the body's.)";
 
-/// What describe() and DescriptorFrames() are both told.
+/// Arguments common to describe() and DescriptorFrames().
 struct DescriptorArguments {
   int size = 128, past = 10;
   bool normals = true;

@@ -35,7 +35,7 @@ constexpr const char* kKeypointsLoadDoc = R"(The detections in a file or folder,
 
 Read are OpenPose, COCO, AlphaPose, MMPose, MediaPipe, AIST++, FreeMoCap and this project's own .npz. `view` names
 the camera of a file that has several, `person` who is meant (0: the largest and longest in view), `fps` the frame
-rate of a file that does not say, `image_size` the pictures' size where it is known, `convention` OpenPose's model
+rate of a file that does not say, `image_size` the images' size where it is known, `convention` OpenPose's model
 when it should not be recognised. Joints below `min_confidence` count as missing.
 Raises RuntimeError naming the file, what was found and what was expected.)";
 

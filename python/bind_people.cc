@@ -33,7 +33,7 @@ video           a video, or a folder of images, of which fps tells the rate
 out             folder that gets what the command writes: detections.npz, person_0.npz, ..., summary.json and, as
                 asked for, overlay (a video, with side_view from the side too), masks (coarse_masks: as the network
                 gives them), report (a page); None: no file
-people, person  at most so many (0: everybody); only this one; least_seconds: whoever is seen for less is left out
+people, person  at most so many (0: everybody); only this one; min_seconds: whoever is seen for less is left out
 detector        size of BlazePose's network: "lite", "full" or "heavy"; pose_model, box_model: networks of your own;
                 models: folder of BlazePose's (`./dev models`); detect_rate: detect so many frames a second only while
                 everybody moves slowly; mask: use people's masks
@@ -96,7 +96,7 @@ std::vector<std::shared_ptr<KeypointSequence>> Detect(const DetectPeopleRequest&
 void BindPeople(py::module_& module) {
   module.def(
       "run",
-      [](const Path& video, const std::optional<Path>& out, int people, std::optional<int> person, double least_seconds,
+      [](const Path& video, const std::optional<Path>& out, int people, std::optional<int> person, double min_seconds,
          std::optional<double> fps, double min_confidence, const std::string& view,
          const std::optional<CameraArgument>& camera, std::optional<double> focal_px, std::optional<double> focal_35mm,
          const std::optional<BodyArgument>& body, std::optional<double> stature_m, const std::optional<Path>& prior,
@@ -105,15 +105,15 @@ void BindPeople(py::module_& module) {
          bool mask, double begin_s, std::optional<double> end_s, const std::string& solver, int threads,
          bool uncertainty, bool ground, bool overlay, bool side_view, bool masks, bool coarse_masks, bool report,
          const py::object& progress) {
-        BODYLOOM_CHECK(people >= 0 && person.value_or(0) >= 0 && least_seconds >= 0,
-                       "people, person, least_seconds: expected 0 or more");
+        BODYLOOM_CHECK(people >= 0 && person.value_or(0) >= 0 && min_seconds >= 0,
+                       "people, person, min_seconds: expected 0 or more");
         BODYLOOM_CHECK(out || !(side_view || masks || report),
                        "side_view, masks, report: are written into a folder, expected out");
         CheckThreads(threads);
         TrackPeopleClipRequest request;
         GivenInMemory given;
         request.out = TextOf(out);
-        request.max_people = people, request.person = person, request.least_seconds = least_seconds;
+        request.max_people = people, request.person = person, request.min_seconds = min_seconds;
         request.overlay = overlay, request.report = report;
         request.masks = masks, request.coarse_masks = coarse_masks;
         TrackSettings& track = request.track;
@@ -139,7 +139,7 @@ void BindPeople(py::module_& module) {
         return RunPeople(request, std::move(given), progress);
       },
       py::arg("video"), py::kw_only(), py::arg("out") = py::none(), py::arg("people") = 0,
-      py::arg("person") = py::none(), py::arg("least_seconds") = 0.5, py::arg("fps") = py::none(),
+      py::arg("person") = py::none(), py::arg("min_seconds") = 0.5, py::arg("fps") = py::none(),
       py::arg("min_confidence") = 0.0, py::arg("view") = "", py::arg("camera") = py::none(),
       py::arg("focal_px") = py::none(), py::arg("focal_35mm") = py::none(), py::arg("body") = py::none(),
       py::arg("stature_m") = py::none(), py::arg("prior") = py::none(), py::arg("lifter") = py::none(),

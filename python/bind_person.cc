@@ -20,7 +20,7 @@
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
-#include "render/photo_avatar/wear_clothes.h"
+#include "render/photo_avatar/transfer_clothes.h"
 
 namespace bodyloom::python {
 namespace {
@@ -43,7 +43,7 @@ constexpr const char* kParseDoc =
     "weights: \"builtin\", \"body\" (what the fitted body shows nearest), or a file of `bodyloom train parser`. The\n"
     "rest and what is raised: as Person.from_photos().";
 
-/// What Person.from_photos() and parse_photo() take of how a photo is fitted.
+/// Fit settings from the arguments of Person.from_photos() and parse_photo().
 PhotoFitSettings FitOf(int who, const std::optional<Path>& body, std::optional<double> focal_px,
                        std::optional<double> stature_m, const std::optional<Path>& models) {
   BODYLOOM_CHECK(focal_px.value_or(1) > 0 && stature_m.value_or(1) > 0,
@@ -63,7 +63,7 @@ class PersonObject {
 
   [[nodiscard]] const PhotoPerson& person() const { return person_; }
   [[nodiscard]] std::shared_ptr<BodyModel> body() const { return std::const_pointer_cast<BodyModel>(person_.body); }
-  [[nodiscard]] py::array texture() const { return PictureFrom(person_.texture); }
+  [[nodiscard]] py::array texture() const { return ArrayFromImage(person_.texture); }
   [[nodiscard]] py::array labels() const {
     const bool known = !person_.labels.empty();
     return py::array_t<uint8_t>({known ? person_.texture.height : 0, known ? person_.texture.width : 0},
@@ -75,13 +75,17 @@ class PersonObject {
   }
   [[nodiscard]] std::shared_ptr<TrackObject> Moved(const TrackArgument& argument, bool own_stature) const {
     const std::shared_ptr<TrackObject> track = TrackFrom(argument);
-    const PersonPlacing placed = own_stature ? PersonPlacing::kInScene : PersonPlacing::kInPicture;
+    const PersonPlacing placed = own_stature ? PersonPlacing::kInScene : PersonPlacing::kInImage;
     return std::make_shared<TrackObject>(MovedByPerson(person_, track->track, placed), track->name, person_.body);
   }
   [[nodiscard]] std::map<std::string, double> shares() const {
     const PhotoPersonReport& report = person_.report;
-    return {{"seen", report.seen}, {"mirrored", report.mirrored}, {"behind", report.behind},
-            {"hair", report.hair}, {"around", report.around},     {"spread", report.spread}};
+    return {{"seen", report.seen},
+            {"mirrored", report.mirrored},
+            {"behind", report.behind},
+            {"hair", report.hair},
+            {"limb_neighbour", report.limb_neighbour},
+            {"smooth_fill", report.smooth_fill}};
   }
 
  private:
@@ -128,12 +132,12 @@ void BindPerson(py::module_& module) {
           },
           py::arg("folder"), "Writes body.npz, texture.png, photo_0.npz ... and person.json into the folder.")
       .def("moved", &PersonObject::Moved, py::arg("track"), py::kw_only(), py::arg("own_stature") = false,
-           "The motion by this person: a track of `body`, whose betas are zero. As tall in the picture as\n"
+           "The motion by this person: a track of `body`, whose betas are zero. As tall in the image as\n"
            "whoever moved there; with own_stature as tall in the scene as the photos say.")
       .def(
           "wearing",
           [](const PersonObject& self, const PersonObject& other) {
-            return std::make_unique<PersonObject>(InClothesOf(self.person(), other.person()));
+            return std::make_unique<PersonObject>(TransferClothes(self.person(), other.person()));
           },
           py::arg("other"),
           "This person in the other one's clothes, a loose garment among them. Raises ValueError for people of\n"

@@ -31,11 +31,11 @@ what           "overlay", "iuv", "parts", "normal", "depth", "texture" or "error
 view_yaw_deg   a camera that follows the person; 90: from its left when it faces the camera; None: the track's own
 texture        for "texture": laid out in the body's atlas; uint8 (H, W, 3), red green blue, or a file
 truth          for "error": the Track to compare with, in millimetres up to error_maximum (None: 50)
-threads        0: one a core; pictures are the same for any number
+threads        0: one a core; images are the same for any number
 Two threads may share it: the second waits. Raises ValueError for arguments that do not go together, RuntimeError when
 the track is not the body's.)";
 
-constexpr const char* kPictureDoc = R"(One frame: (height, width, 3) uint8, red green blue.
+constexpr const char* kImageDoc = R"(One frame: (height, width, 3) uint8, red green blue.
 
 background  uint8 of that shape under the body; None: a studio for overlays, else one colour
 turn_deg    turns the camera of view_yaw_deg further
@@ -55,7 +55,7 @@ Other arguments as of Renderer(). Raises ValueError, RuntimeError naming a file,
 using FramesArgument = std::variant<int, std::pair<int, int>>;
 using TextureArgument = std::variant<py::array, Path>;
 
-struct PictureArguments {
+struct RendererArguments {
   std::string what;
   std::optional<double> view_yaw_deg;
   std::optional<TextureArgument> texture;
@@ -67,10 +67,10 @@ struct PictureArguments {
 class RendererObject {
  public:
   RendererObject(std::shared_ptr<TrackObject> track, std::shared_ptr<const BodyModel> body,
-                 const PictureArguments& arguments)
+                 const RendererArguments& arguments)
       : track_(std::move(track)), body_(std::move(body)) {
     RequireTrackFitsBody(track_->track, *body_, track_->name);
-    RenderPictureOptions options;
+    FrameRendererOptions options;
     options.kind = RenderKindFromString(arguments.what);
     BODYLOOM_CHECK((options.kind == RenderKind::kTexture) == arguments.texture.has_value(),
                    "texture: goes with what=\"texture\", and with nothing else");
@@ -99,21 +99,21 @@ class RendererObject {
     CheckThreads(arguments.threads);
     options.num_threads = ThreadsFor(arguments.threads);
     has_new_view_ = options.new_view;
-    picture_ = std::make_unique<RenderPicture>(*body_, track_->track, options, track_->name);
+    renderer_ = std::make_unique<FrameRenderer>(*body_, track_->track, options, track_->name);
     if (options.kind == RenderKind::kDepth) SetDepthRange();
   }
 
   [[nodiscard]] int num_frames() const { return track_->track.num_frames(); }
   [[nodiscard]] int width() const { return track_->track.camera.width; }
   [[nodiscard]] int height() const { return track_->track.camera.height; }
-  [[nodiscard]] std::string Legend() const { return picture_->Legend(); }
+  [[nodiscard]] std::string Legend() const { return renderer_->Legend(); }
 
   void RequireFrame(int frame) const {
     BODYLOOM_CHECK(frame >= 0 && frame < num_frames(), "frame ", frame, " is outside the track's ", num_frames(),
                    " frames");
   }
 
-  py::array Picture(int frame, const py::object& background, double turn_deg) {
+  py::array DrawFrame(int frame, const py::object& background, double turn_deg) {
     RequireFrame(frame);
     BODYLOOM_CHECK(turn_deg == 0 || has_new_view_, "turn_deg: turns the camera of view_yaw_deg, which was not given");
     std::optional<Image> behind;
@@ -127,20 +127,20 @@ class RendererObject {
       const py::gil_scoped_release unlocked;
       image = Draw(frame, turn_deg, behind ? &*behind : nullptr);
     }
-    return PictureFrom(std::move(image));
+    return ArrayFromImage(std::move(image));
   }
 
   /// Without the interpreter's lock.
   Image Draw(int frame, double turn_deg, const Image* background) {
     const std::lock_guard<std::mutex> one_at_a_time(mutex_);
-    return picture_->Draw(frame, turn_deg, background);
+    return renderer_->Draw(frame, turn_deg, background);
   }
 
  private:
   void SetDepthRange() {
     std::vector<int> frames(static_cast<size_t>(num_frames()));
     for (int t = 0; t < num_frames(); ++t) frames[size_t(t)] = t;
-    picture_->SetDepthRange(frames);
+    renderer_->SetDepthRange(frames);
   }
 
   std::shared_ptr<TrackObject> track_, truth_;
@@ -148,7 +148,7 @@ class RendererObject {
   std::vector<float> texels_;
   bool has_new_view_ = false;
   std::mutex mutex_;
-  std::unique_ptr<RenderPicture> picture_;
+  std::unique_ptr<FrameRenderer> renderer_;
 };
 
 py::array RenderInMemory(RendererObject* renderer, std::pair<int, int> frames, const py::object& progress) {
@@ -157,9 +157,9 @@ py::array RenderInMemory(RendererObject* renderer, std::pair<int, int> frames, c
                  "frames: expected (begin, end) within (0, ", renderer->num_frames(), "), found (", first, ", ", end,
                  ")");
   const py::ssize_t row = py::ssize_t(3) * renderer->width() * renderer->height();
-  py::array_t<uint8_t> pictures(
+  py::array_t<uint8_t> images(
       {py::ssize_t(end - first), py::ssize_t(renderer->height()), py::ssize_t(renderer->width()), py::ssize_t(3)});
-  uint8_t* out = pictures.mutable_data();
+  uint8_t* out = images.mutable_data();
   PythonCallbacks(progress).Run([&, first = first, end = end](const PipelineCallbacks& callbacks) {
     for (int t = first; t < end; ++t) {
       callbacks.Update("draw", double(t - first) / (end - first));
@@ -170,7 +170,7 @@ py::array RenderInMemory(RendererObject* renderer, std::pair<int, int> frames, c
       }
     }
   });
-  return pictures;
+  return images;
 }
 
 /// "a:b", or "" for all.
@@ -181,7 +181,7 @@ std::string RangeText(const std::optional<FramesArgument>& frames) {
   return Concatenate(first, ":", end);
 }
 
-void RenderToFile(const TrackObject& track, const BodyModel& body, const PictureArguments& arguments,
+void RenderToFile(const TrackObject& track, const BodyModel& body, const RendererArguments& arguments,
                   const py::object& progress, RenderTrackRequest request) {
   request.track = track.name;
   request.what = RenderKindFromString(arguments.what);
@@ -214,15 +214,15 @@ void BindRendering(py::module_& module) {
              std::shared_ptr<const BodyModel> body_model = BodyOf(*track, body);
              return std::make_unique<RendererObject>(
                  std::move(track), std::move(body_model),
-                 PictureArguments{what, view_yaw_deg, texture, truth, error_maximum, threads});
+                 RendererArguments{what, view_yaw_deg, texture, truth, error_maximum, threads});
            }),
            py::arg("track"), py::arg("what") = "overlay", py::kw_only(), py::arg("body") = py::none(),
            py::arg("view_yaw_deg") = py::none(), py::arg("texture") = py::none(), py::arg("truth") = py::none(),
            py::arg("error_maximum") = py::none(), py::arg("threads") = 0)
-      .def("picture", &RendererObject::Picture, py::arg("frame"), py::kw_only(), py::arg("background") = py::none(),
-           py::arg("turn_deg") = 0.0, kPictureDoc)
-      .def_property_readonly("width", &RendererObject::width, "Of the pictures, pixels.")
-      .def_property_readonly("height", &RendererObject::height, "Of the pictures, pixels.")
+      .def("image", &RendererObject::DrawFrame, py::arg("frame"), py::kw_only(), py::arg("background") = py::none(),
+           py::arg("turn_deg") = 0.0, kImageDoc)
+      .def_property_readonly("width", &RendererObject::width, "Of the images, pixels.")
+      .def_property_readonly("height", &RendererObject::height, "Of the images, pixels.")
       .def_property_readonly("legend", &RendererObject::Legend, "What the colours mean; \"\" where they say it.")
       .def("__len__", &RendererObject::num_frames);
   module.def(
@@ -234,7 +234,7 @@ void BindRendering(py::module_& module) {
          std::optional<double> error_maximum, int threads, const py::object& progress) -> py::object {
         const std::shared_ptr<TrackObject> track = TrackFrom(track_argument);
         const std::shared_ptr<const BodyModel> body_model = BodyOf(*track, body);
-        const PictureArguments arguments{what, view_yaw_deg, texture, truth, error_maximum, threads};
+        const RendererArguments arguments{what, view_yaw_deg, texture, truth, error_maximum, threads};
         if (out) {
           RenderTrackRequest request;
           request.out = out->string();
@@ -247,7 +247,7 @@ void BindRendering(py::module_& module) {
         BODYLOOM_CHECK(!video && !turntable, "video and turntable are of files: give out");
         RendererObject renderer(track, body_model, arguments);
         if (!frames) return RenderInMemory(&renderer, {0, renderer.num_frames()}, progress);
-        if (const int* frame = std::get_if<int>(&*frames)) return renderer.Picture(*frame, py::none(), 0);
+        if (const int* frame = std::get_if<int>(&*frames)) return renderer.DrawFrame(*frame, py::none(), 0);
         return RenderInMemory(&renderer, std::get<std::pair<int, int>>(*frames), progress);
       },
       py::arg("track"), py::arg("frames") = py::none(), py::kw_only(), py::arg("out") = py::none(),

@@ -63,7 +63,7 @@ its 2D joints carry a detector's noise and gaps. The same arguments give the sam
 
 using KeypointsArgument = std::variant<std::shared_ptr<KeypointSequence>, Path>;
 
-/// What the arguments amount to. The lists of options are long, but each has one line and one meaning.
+/// Request and inputs made of the Python arguments.
 struct TrackArguments {
   TrackRequest request;
   GivenInMemory given;

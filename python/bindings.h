@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The parts of the module, one a file: each adds its names, in the order in which they need each other.
+/// Parts of the Python module, one per file, in the order in which they depend on each other.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -23,11 +23,11 @@ void BindPerson(pybind11::module_& module);
 void BindAvatar(pybind11::module_& module);
 void BindResults(pybind11::module_& module);
 
-/// The name of a convention (data_tools/observations/keypoint_conventions.h), or a list of landmarks.
+/// Name of a convention (data_tools/observations/keypoint_conventions.h), or a list of landmarks.
 using LandmarkNames = std::variant<std::string, std::vector<std::string>>;
 
-/// The convention's name and its landmarks; "custom" for a list. Throws std::invalid_argument for a name that there is
-/// not, and for a list that is empty or names a landmark twice.
+/// The convention's name and its landmarks; "custom" for a list. Throws std::invalid_argument for an unknown name, and
+/// for a list that is empty or has duplicates.
 std::pair<std::string, std::vector<std::string>> ConventionFrom(const LandmarkNames& names);
 
 }  // namespace bodyloom::python

@@ -26,7 +26,7 @@ bool PythonCallbacks::Keeping(const Call& call) {
   }
 }
 
-bool PythonCallbacks::GoesOn(const std::string& stage, double fraction) {
+bool PythonCallbacks::ReportProgress(const std::string& stage, double fraction) {
   const std::lock_guard<std::mutex> one_at_a_time(mutex_);
   const bool has_progress = !progress_.is_none();
   if (stopped_) return false;
@@ -51,7 +51,7 @@ void PythonCallbacks::Log(const std::string& line) {
 
 PipelineCallbacks PythonCallbacks::ForPipeline() {
   PipelineCallbacks callbacks;
-  callbacks.progress = [this](const std::string& stage, double fraction) { return GoesOn(stage, fraction); };
+  callbacks.progress = [this](const std::string& stage, double fraction) { return ReportProgress(stage, fraction); };
   callbacks.message = [this](const std::string& line) { Log(line); };
   return callbacks;
 }

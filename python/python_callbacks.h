@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Long work on behalf of Python: the interpreter's lock is released while it runs, and Ctrl-C, the caller's progress
-/// function and the log reach it through the pipelines' callbacks.
+/// Runs long jobs called from Python: releases the GIL while they run, and connects Ctrl-C, the caller's progress
+/// function and the log to the pipelines' callbacks.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -25,15 +25,15 @@ namespace bodyloom::python {
 
 namespace py = pybind11;
 
-/// One call's. Messages go to the logger "bodyloom" as warnings.
+/// Callbacks of one call. Messages are logged as warnings to the logger "bodyloom".
 class PythonCallbacks {
  public:
-  /// `progress(stage, fraction)`, or None. The work is cancelled when it returns False; what it raises is raised out of
-  /// Run().
+  /// `progress(stage, fraction)`, or None. The job is cancelled when it returns False; exceptions it raises are
+  /// rethrown by Run().
   explicit PythonCallbacks(py::object progress) : progress_(std::move(progress)) {}
 
-  /// work(callbacks) without the interpreter's lock. Afterwards what a callback raised is raised, KeyboardInterrupt
-  /// among it, else what the work threw.
+  /// Runs work(callbacks) without the GIL. Afterwards rethrows what a callback raised, including KeyboardInterrupt, or
+  /// else what the job threw.
   template <typename Work>
   auto Run(const Work& work) {
     using Result = decltype(work(std::declval<const PipelineCallbacks&>()));
@@ -59,9 +59,9 @@ class PythonCallbacks {
 
  private:
   [[nodiscard]] PipelineCallbacks ForPipeline();
-  bool GoesOn(const std::string& stage, double fraction);
+  bool ReportProgress(const std::string& stage, double fraction);
   void Log(const std::string& line);
-  /// With the interpreter's lock: calls Python, and keeps what it raises.
+  /// Calls Python with the GIL held and stores what it raises.
   template <typename Call>
   bool Keeping(const Call& call);
   void RethrowRaised();
@@ -74,26 +74,26 @@ class PythonCallbacks {
   std::exception_ptr raised_;
 };
 
-// How arguments that several functions take become a request for tracks.
+// Conversion of arguments shared by several functions to requests for tracks.
 
 using CameraArgument = std::variant<Camera, Path>;
 
-/// The number given, checked; 0 when there is none.
+/// The given number, which must be positive; 0 if there is none.
 double PositiveOr0(const std::optional<double>& value, const char* name);
 
-/// A file is named in the request, an object is given.
+/// A path is stored in the request, an object in `given`.
 void TakeCamera(const std::optional<CameraArgument>& argument, TrackSettings* request, GivenInMemory* given);
 void TakeBody(const std::optional<BodyArgument>& argument, TrackSettings* request, GivenInMemory* given);
 
-/// The body in memory that a track is of, so that what is asked of it later finds it; the request's file is read, and
-/// given from then on. Null: the built-in one.
+/// The body of a track, loaded so that the track can keep it: the request's file is read and replaced by an object in
+/// `given`. Null: the built-in one.
 std::shared_ptr<const BodyModel> BodyToKeep(const TrackSettings& request, GivenInMemory* given);
 
-/// What detects people: networks of BlazePose ("lite", "full", "heavy") or of the user's own.
+/// Options of the people detector: networks of BlazePose ("lite", "full", "heavy") or of the user.
 FrameDetectorOptions DetectorFrom(const std::string& detector, const std::optional<Path>& pose_model,
                                   const std::optional<Path>& box_model, const std::optional<Path>& models);
 
-/// Throws std::invalid_argument for a number of threads that cannot be.
+/// Throws std::invalid_argument for an invalid number of threads.
 void CheckThreads(int threads);
 
 }  // namespace bodyloom::python

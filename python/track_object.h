@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What Python's objects of this module hold, and how arguments become it.
+/// Track object of the Python module, and conversion of arguments to bodies and tracks.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -17,13 +17,13 @@
 
 namespace bodyloom::python {
 
-/// A track that does not change, with what it came from.
+/// An immutable track with its origin.
 struct TrackObject {
   TrackObject(Track track, std::string name, std::shared_ptr<const BodyModel> body = nullptr);
 
   Track track;
-  std::string name;                             ///< in messages: its file, or what it is
-  std::shared_ptr<const BodyModel> body;        ///< that it was fitted with; null: a file does not say which
+  std::string name;                             ///< its file or a description, for messages
+  std::shared_ptr<const BodyModel> body;        ///< that it was fitted with; null: unknown, for a track from a file
   std::optional<TrackSequenceSummary> summary;  ///< of the solve; none for a track from a file
   std::vector<double> joints, coco17;           ///< T×J×3 and T×17×3 in one piece; empty when the track has none
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The problem that TrackSequence() solves, as a ceres::Problem to look into, change and solve.
+/// The problem that TrackSequence() solves, as a ceres::Problem to inspect, change and solve.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ class ClipFit;
 
 class ClipCeresProblem {
  public:
-  /// As BuildCeresProblem(), which checks what it is given.
+  /// As BuildCeresProblem(), but without its checks of input and options.
   ClipCeresProblem(const TrackSequenceInput& input, const TrackSequenceOptions& options);
   ~ClipCeresProblem();
   ClipCeresProblem(const ClipCeresProblem&) = delete;
@@ -23,9 +23,9 @@ class ClipCeresProblem {
 
   /// Null when no frame shows enough of the body to start from; the summary says so.
   [[nodiscard]] CeresProblem* blocks() { return blocks_.get(); }
-  /// What ran so far.
+  /// Summary of the stages so far.
   [[nodiscard]] const TrackSequenceSummary& summary() const { return result_.summary; }
-  /// The track at the parameters' values, with all that TrackSequence() gives beside it. Once.
+  /// The result of TrackSequence() at the parameters' current values. To be called once.
   TrackSequenceResult Finish();
 
  private:
@@ -35,10 +35,9 @@ class ClipCeresProblem {
   std::unique_ptr<CeresProblem> blocks_;
 };
 
-/// States the problem of a clip as TrackSequence() hands it to Ceres: all terms of all frames, at the values to which
-/// the stages before have brought them (SequenceSolver::kChainThenCeres). What `input`
-/// points to is borrowed for the life of the result; defaults are filled in and it throws as TrackSequence() does.
-/// Every observation is a residual block with a loss function of its own.
+/// Builds the problem of a clip as TrackSequence() passes it to Ceres: all terms of all frames, at the parameter values
+/// after the earlier stages (SequenceSolver::kChainThenCeres). What `input` points to must outlive the result; defaults
+/// and exceptions are those of TrackSequence(). Every observation is a residual block with a loss function of its own.
 std::unique_ptr<ClipCeresProblem> BuildCeresProblem(const TrackSequenceInput& input,
                                                     const TrackSequenceOptions& options = {});
 

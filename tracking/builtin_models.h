@@ -9,9 +9,9 @@
 namespace bodyloom {
 
 /// `input` with the built-in body (data_tools/body/builtin_body.h), pose prior and lifter (data_tools/learned) wherever
-/// it names none, which is what TrackSequence() tracks with. No prior where options.prior_weight is 0; no lifter where
-/// options.lifter_weight is 0, or where 3D landmarks of one's own (TrackSequenceInput::lifted) take its place. Weights
-/// and body live as long as the program. May be called by several threads.
+/// it names none, as TrackSequence() uses them. No prior where options.prior_weight is 0; no lifter where
+/// options.lifter_weight is 0, or where the user's 3D landmarks (TrackSequenceInput::lifted) replace it. Weights and
+/// body live as long as the program. May be called by several threads.
 TrackSequenceInput WithBuiltins(TrackSequenceInput input, const TrackSequenceOptions& options = {});
 
 /// The same for the live tracker: always all three.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Fits one body to a clip: what was seen in one camera → a pose in every frame, one shape, and the camera.
+/// Fits one body to a clip: observations of one camera → a pose in every frame, one shape, and the camera.
 /// How it works: docs/tracking.md.
 #pragma once
 

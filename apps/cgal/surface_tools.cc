@@ -39,7 +39,7 @@ struct PolygonSoup {
   std::vector<std::array<size_t, 3>> polygons;
 };
 
-/// Whether the loop is short enough, and none of its vertices lies at the place of another.
+/// Returns true if the loop is short enough and no two of its vertices coincide.
 bool CanBeClosed(const CgalMesh& mesh, CgalMesh::Halfedge_index border, int max_edges) {
   std::set<CgalPoint> places;
   int edges = 0;

@@ -23,10 +23,10 @@ PhotoBackground ParsePhotoBackground(const std::string& option) {
   return result;
 }
 
-/// Who is shown, from where and in whose shape.
+/// Adds the options of appearance, view and body shape.
 void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request) {
   verb->add_option("--views", request->views,
-                   "More pictures of the person, IMAGE:TRACK[:FRAME]: what they show is added");
+                   "More images of the person, IMAGE:TRACK[:FRAME]: what they show is added");
   verb->add_option("--garment-from", request->garment.from, "Another person, IMAGE:TRACK[:FRAME], who lends --parts");
   verb->add_option("--parts", request->garment.parts, "top, bottom, shoes, head, arms, or DensePose parts 1 to 24")
       ->delimiter(',');
@@ -41,7 +41,7 @@ void AddPhotoOptions(CLI::App* verb, PhotoAnimationRequest* request) {
       "What the photo's pixels show of the body, by an estimate from it: DensePose's IUV image, or a folder "
       "of one a frame (default: the tracked body)");
   verb->add_option("--iuv", request->iuv,
-                   "The same of the motion's pictures, a folder of IUV images: not with --view-yaw");
+                   "The same of the motion's images, a folder of IUV images: not with --view-yaw");
 }
 
 void Print(const AnimateFromPhotoSummary& s, const AnimateFromPhotoRequest& request) {
@@ -66,12 +66,12 @@ void RunAnimateFromPhoto(AnimateFromPhotoArguments options) {
   if (scored) {
     TakeFrom(request, &options.score);
     options.score.renderer = guided ? PeopleRenderer::kGuided : PeopleRenderer::kPhoto;
-    options.score.completion = request.completion, options.score.anywhere = request.anywhere;
+    options.score.completion = request.completion, options.score.whole_window = request.whole_window;
     Print(RunWithBar("scores", ScorePeople, options.score));
     return;
   }
   if (!guided && request.track.empty()) throw RequestError("--track is needed: the motion");
-  if (!guided && !options.score.weights.empty()) throw RequestError("--weights measure the pictures of --score");
+  if (!guided && !options.score.weights.empty()) throw RequestError("--weights measure the images of --score");
   request.weights = options.score.weights;
   Print(RunWithBar("animate", AnimateFromPhoto, request), request);
 }
@@ -80,7 +80,7 @@ void AddAnimateFromPhoto(CLI::App* verb, AnimateFromPhotoArguments* options) {
   AnimateFromPhotoRequest& request = options->request;
   verb->add_option("--run", request.run, "Folder of the trained run")->required();
   verb->add_option("--image", request.photo.image,
-                   "The photo: a picture, a video, a folder of pictures, or a single-person dataset");
+                   "The photo: an image, a video, a folder of images, or a single-person dataset");
   verb->add_option("--image-track", request.photo.track, "Its track, .npz (default: the single-person dataset's own)");
   verb->add_option("--image-frame", request.photo.frame, "Frame of a video or dataset that is the photo")
       ->check(CLI::NonNegativeNumber)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What `bodyloom animate photo` and `bodyloom animate guided` have in common: one job, two renderers.
+/// Command line shared by `bodyloom animate photo` and `bodyloom animate guided`.
 #pragma once
 
 #include <string>
@@ -15,16 +15,16 @@ namespace bodyloom {
 
 struct AnimateFromPhotoArguments {
   AnimateFromPhotoRequest request;
-  ScorePeopleRequest score;          ///< where --score is given, instead
-  std::string background = "photo";  ///< as --background has it
+  ScorePeopleRequest score;          ///< used instead with --score
+  std::string background = "photo";  ///< value of --background
 };
 
-/// --run, --image and what belongs to it, --views, --garment-from, --parts, --shape, --view-yaw, --iuv, --track, --out,
-/// --body, --background, --full-size, --json, those of --score, --threads, --device. `options` must live as long as the
+/// Adds --run, --image and its related options, --views, --garment-from, --parts, --shape, --view-yaw, --iuv, --track,
+/// --out, --body, --background, --full-size, --json, those of --score, --threads, --device. `options` must outlive the
 /// verb.
 void AddAnimateFromPhoto(CLI::App* verb, AnimateFromPhotoArguments* options);
 
-/// Animates or scores, and prints what came of it.
+/// Animates or scores, and prints the result.
 void RunAnimateFromPhoto(AnimateFromPhotoArguments options);
 
 }  // namespace bodyloom

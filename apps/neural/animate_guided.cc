@@ -15,7 +15,7 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
   request.renderer = PersonRendererKind::kGuided;
   AddAnimateFromPhoto(verb, options.get());
   verb->add_option("--data", request.data,
-                   "Instead: a dataset of the same person, whose motion is shown and whose pictures are compared");
+                   "Instead: a dataset of the same person, whose motion is shown and whose images are compared");
   const auto completes = [&request](MapCompletion completion) {
     return [&request, completion](int64_t) { request.completion = completion; };
   };
@@ -26,10 +26,10 @@ void AddAnimateGuided(CLI::App& animate, Action* action) {
           "Complete the maps over six views drawn by the networks, as the paper does, instead of as the run says")
       ->excludes("--as-seen");
   verb->add_flag(
-      "--whole-window", request.anywhere,
+      "--whole-window", request.whole_window,
       "Compute the whole window: the person may be farther from the body than clothes ever were in training");
   verb->add_option("--sheet", request.sheet, "Contact sheet: photo, what is known, labels, result");
-  verb->add_option("--uv-maps", request.surface, "Picture of the coherent maps and the virtual views");
+  verb->add_option("--uv-maps", request.surface, "Image of the coherent maps and the virtual views");
   verb->footer(
       "Example:\n"
       "  bodyloom animate guided --run run --image photo.jpg --image-track photo.npz --track dance.npz --out "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options and lines that `bodyloom animate photo|animate|motion` share.
+/// Options and output shared by `bodyloom animate photo|animate|motion`.
 #pragma once
 
 #include <string>
@@ -12,17 +12,17 @@ class App;
 
 namespace bodyloom {
 
-/// Of --full-size.
+/// Help text of --full-size.
 inline constexpr const char* kFullSizeHelp =
-    "Pictures as large as the track's, the person enlarged to them (default: as large as the networks draw)";
+    "Images as large as the track's, the person enlarged to them (default: as large as the networks draw)";
 
-/// --weights of the verbs that print LPIPS or contextual scores; `what`: the files' names and what they are for.
+/// Adds --weights of the verbs that print LPIPS or contextual scores; `what`: names and purposes of the files.
 void AddLikenessWeights(CLI::App* verb, std::string* weights, const char* what);
 
-/// --threads, --device.
+/// Adds --threads, --device.
 void AddDeviceOptions(CLI::App* verb, AnimationRequest* request);
 
-/// A line where frames have no fit.
+/// Prints a line if frames have no fit.
 void PrintFramesWithoutFit(const AnimationSummary& summary);
 
 }  // namespace bodyloom

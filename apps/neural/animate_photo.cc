@@ -12,7 +12,7 @@ void AddAnimatePhoto(CLI::App& animate, Action* action) {
   auto options = std::make_shared<AnimateFromPhotoArguments>();
   AnimateFromPhotoRequest& request = options->request;
   AddAnimateFromPhoto(verb, options.get());
-  verb->add_flag("--whole-window", request.anywhere, "Compute the background of the window too");
+  verb->add_flag("--whole-window", request.whole_window, "Compute the background of the window too");
   verb->add_option("--sheet", request.sheet, "Contact sheet: photo, its texture, the completed one, six frames");
   verb->add_option("--texture", request.surface, "The completed texture as an image");
   verb->footer(

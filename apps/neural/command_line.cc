@@ -18,7 +18,7 @@ std::string CommandLine(const AnimateMotionRequest& request) {
   if (request.shape_of_track) add("--shape", "track");
   add("--freeze", request.freeze);
   if (request.warmup != AnimateMotionRequest().warmup) add("--warmup", Concatenate(request.warmup));
-  line += request.anywhere ? " --whole-window" : "";
+  line += request.whole_window ? " --whole-window" : "";
   line += request.without_past ? " --without-past" : "";
   line += request.full_size ? " --full-size" : "";
   add("--out", request.out), add("--set", request.set);

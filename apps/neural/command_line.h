@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The command that does a job again, for the files that remember it.
+/// Command lines that repeat a job, stored in output files.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace bodyloom {
 
-/// "bodyloom animate motion --run run …": what the result depends on, what was left at its default left out.
+/// "bodyloom animate motion --run run …": the options that affect the result, without those left at their defaults.
 std::string CommandLine(const AnimateMotionRequest& request);
 
 }  // namespace bodyloom

@@ -15,7 +15,7 @@
 
 namespace {
 
-/// What a user calls this program: most of its verbs are reached as `bodyloom VERB` too.
+/// Name of this program for users; most of its verbs are also available as `bodyloom VERB`.
 std::string CalledAs(int argc, char** argv) {
   const std::string_view verb = argc > 1 ? argv[1] : "";
   return verb == "train" || verb == "animate" || verb == "metrics" || verb == "detect" ? "bodyloom" : "bodyloom neural";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The verbs that need LibTorch, one file each (apps/neural/NAME.cc).
-/// An Add function adds its verb to the parser and, when the user chose it, sets `action` to what is to be done.
+/// Verbs that need LibTorch, one file each (apps/neural/NAME.cc). An Add function adds its verb to the parser; if the
+/// user chose the verb, it sets `action` to its job.
 #pragma once
 
 #include "apps/verbs.h"
@@ -20,7 +20,7 @@ void AddTrainParser(CLI::App& train, Action* action);
 void AddAnimateMotion(CLI::App& animate, Action* action);
 void AddAnimatePhoto(CLI::App& animate, Action* action);
 void AddAnimateGuided(CLI::App& animate, Action* action);
-/// `animate person` with --score alone.
+/// `animate person`, only with --score.
 void AddScorePerson(CLI::App& animate, Action* action);
 
 }  // namespace bodyloom

@@ -13,12 +13,12 @@ namespace bodyloom {
 
 void AddScoreOptions(CLI::App* verb, ScorePeopleRequest* request) {
   verb->add_option("--score", request->data,
-                   "Instead: measure on the test people of this multi-person dataset; photos and pictures are the same "
+                   "Instead: measure on the test people of this multi-person dataset; photos and images are the same "
                    "for `animate photo`, `guided` and `person`");
   verb->add_option("--score-photos", request->photos, "Numbers of photos to measure with, such as 1 2 4")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  verb->add_option("--score-frames", request->frames, "Pictures of each person to compare with")
+  verb->add_option("--score-frames", request->frames, "Images of each person to compare with")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   verb->add_option_function<std::string>(

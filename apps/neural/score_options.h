@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options and lines of `--score`, which `bodyloom animate photo`, `guided` and `person` have in common.
+/// Options and output of `--score`, shared by `bodyloom animate photo`, `guided` and `person`.
 #pragma once
 
 #include <string>
@@ -13,21 +13,21 @@ class App;
 
 namespace bodyloom {
 
-/// --score, --score-photos, --score-frames, --score-labels, --score-tracks, --score-iuv, --weights. `request` must live
-/// as long as the verb.
+/// Adds --score, --score-photos, --score-frames, --score-labels, --score-tracks, --score-iuv, --weights. `request` must
+/// outlive the verb.
 void AddScoreOptions(CLI::App* verb, ScorePeopleRequest* request);
 
-/// Whether people are to be scored, not a person animated. Throws RequestError where the photo or the video is missing,
-/// or both are requested.
+/// Returns true if people are scored instead of a person animated. Throws RequestError if the photo or the video is
+/// missing, or if both are requested.
 bool IsScored(const ScorePeopleRequest& score, const PhotoAnimationRequest& animation);
 
-/// What both requests share.
+/// Copies the fields common to both requests.
 void TakeFrom(const PhotoAnimationRequest& animation, ScorePeopleRequest* score);
 
-/// L1, PSNR and all that was measured.
+/// Text of L1, PSNR and the other scores measured.
 std::string ScoresText(const PersonScores& scores);
 
-/// A line a number of photos.
+/// Prints one line per number of photos.
 void Print(const ScorePeopleSummary& summary);
 
 }  // namespace bodyloom

@@ -48,7 +48,7 @@ void RunTrainGuided(const TrainGuidedArguments& parsed) {
   const PersonScores& s = summary.scores;
   if (s.frames > 0) {
     std::printf(
-        "validation of %d pictures (%s given): L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS%s "
+        "validation of %d images (%s given): L1 %.4f, PSNR %.2f dB, silhouette IoU %.3f, labels IoU %.3f, LPIPS%s "
         "%.4f\n",
         s.frames, kGivenOfPeople, s.image_l1, s.psnr_db, s.silhouette_iou, s.label_iou,
         s.lpips_random_features ? " (random features)" : "", s.lpips);
@@ -69,7 +69,7 @@ void AddTrainGuided(CLI::App& train, Action* action) {
       ->check(CLI::Range(32, 4096));
   verb->add_option("--without", parsed->without, "Leave out a part, as the paper's ablations do")
       ->check(CLI::IsMember(GuidedParts()));
-  AddStepOptions(verb, &options.steps, &options.batch, &options.learning_rate, "Pairs of pictures in a batch");
+  AddStepOptions(verb, &options.steps, &options.batch, &options.learning_rate, "Pairs of images in a batch");
   verb->add_option("--balance-steps", options.balance_steps, "Steps by L1 alone, in which the losses are measured")
       ->capture_default_str();
   verb->add_option("--gan-share", options.gan_share, "Of the adversarial loss, beside its balanced weight")
@@ -84,7 +84,7 @@ void AddTrainGuided(CLI::App& train, Action* action) {
   verb->add_option("--weights", request.weights,
                    "Folder with trained weights (.safetensors, .pth): vgg16 for the losses, alexnet and lpips_alex for "
                    "validation's LPIPS");
-  AddTrainingOptions(verb, &options, "Of weights and order of pictures");
+  AddTrainingOptions(verb, &options, "Of weights and order of images");
   verb->footer(
       "Example:\n"
       "  bodyloom synth-people --motions motions --out people\n"

@@ -16,8 +16,7 @@ namespace bodyloom {
 namespace {
 
 void PrintOverlap(const TrainClothesParserSummary& summary) {
-  std::printf("%zu pictures of people kept for testing, intersection over union inside the mask:\n",
-              summary.test_pictures);
+  std::printf("%zu images of people kept for testing, intersection over union inside the mask:\n", summary.test_images);
   std::printf("  %-8s %8s %22s\n", "", "parsed", "nearest of the body");
   std::printf("  %-8s %8.3f %22.3f\n", "mean", summary.mean_iou, summary.body_mean_iou);
   for (size_t k = 0; k < summary.iou.size(); ++k) {
@@ -30,7 +29,7 @@ void PrintOverlap(const TrainClothesParserSummary& summary) {
 void RunTrainParser(const TrainClothesParserRequest& request) {
   const TrainClothesParserSummary summary = TrainClothesParser(request, CommandCallbacks());
   PrintStep(summary, request.options.steps);
-  if (summary.test_pictures > 0) PrintOverlap(summary);
+  if (summary.test_images > 0) PrintOverlap(summary);
   std::cout << "wrote " << summary.weights << " (" << summary.num_parameters << " numbers)\n";
   RequireNotStopped(summary, request.out);
 }
@@ -55,7 +54,7 @@ void AddTrainParser(CLI::App& train, Action* action) {
       ->capture_default_str();
   verb->add_option("--body-error", request->body_error_px,
                    "Bodies are off by up to this, as fitted ones are: mean distance of projected vertices, pixels in a "
-                   "picture whose longer side has 512")
+                   "image whose longer side has 512")
       ->check(CLI::Range(0.0, 50.0))
       ->capture_default_str();
   AddTrainingOptions(verb, &options, "Of weights and crops");

@@ -55,10 +55,9 @@ void AddMotionDataOptions(CLI::App* verb, MotionDataRequest* request) {
       ->required();
   verb->add_option("--track", request->track, "The clip's track (default: the single-person dataset's own)");
   verb->add_option("--body", request->body, "The track's body (default: the built-in body)");
-  verb->add_option(
-      "--iuv", request->iuv,
-      "What pixels show of the body by estimates from the pictures, as in the paper's comparisons: a folder "
-      "of DensePose's IUV images, or \"own\", the single-person dataset's (default: the tracked body)");
+  verb->add_option("--iuv", request->iuv,
+                   "What pixels show of the body by estimates from the images, as in the paper's comparisons: a folder "
+                   "of DensePose's IUV images, or \"own\", the single-person dataset's (default: the tracked body)");
   verb->add_option("--mask", request->mask,
                    "For a video: the person's mask (bodyloom detect --mask, bodyloom run --masks), for silhouette, "
                    "classes and normals of the tracked body within it");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options that `bodyloom train photo|animate|motion` share.
+/// Options shared by `bodyloom train photo|animate|motion`.
 #pragma once
 
 #include <string>
@@ -15,27 +15,27 @@ class App;
 
 namespace bodyloom {
 
-/// --out.
+/// Adds --out.
 void AddRunFolderOption(CLI::App* verb, std::string* out);
 
-/// --data of a multi-person dataset, --out, --body.
+/// Adds --data of a multi-person dataset, --out, --body.
 void AddPeopleOptions(CLI::App* verb, std::string* data, std::string* out, std::string* body);
 
-/// --steps, --batch, --learning-rate. `batch_help`: "Pairs in a batch".
+/// Adds --steps, --batch, --learning-rate. `batch_help`: "Pairs in a batch".
 void AddStepOptions(CLI::App* verb, int* steps, int* batch, double* learning_rate, const char* batch_help);
 
-/// --profile.
+/// Adds --profile.
 void AddProfileOption(CLI::App* verb, std::string* profile);
 
-/// --validate-every, --seed, --threads, --device, --resume. `seed_help`: "Of weights and pairs".
+/// Adds --validate-every, --seed, --threads, --device, --resume. `seed_help`: "Of weights and pairs".
 void AddTrainingOptions(CLI::App* verb, TrainingRun* run, const char* seed_help);
 
-/// "12-40" (last frame included) → [12, 41), each. Throws RequestError naming the option.
+/// Parses each "12-40" (last frame included) to [12, 41). Throws RequestError naming the option.
 std::vector<FrameRange> ParseFrameRanges(const std::vector<std::string>& texts, const char* option);
 
 }  // namespace bodyloom
 
-// Options of `bodyloom train motion` that say what is trained on.
+// Options of the training data of `bodyloom train motion`.
 
 namespace CLI {
 class App;
@@ -43,7 +43,7 @@ class App;
 
 namespace bodyloom {
 
-/// --data, --track, --body, --iuv, --mask, --part-labels.
+/// Adds --data, --track, --body, --iuv, --mask, --part-labels.
 void AddMotionDataOptions(CLI::App* verb, MotionDataRequest* request);
 
 }  // namespace bodyloom

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live part of an avatar's page (pipelines/avatar/avatar_page.h): a person of Gaussians, posed, lit, sorted and drawn here.
-// Needs no library and is carried by the program as it is.
+// The live part of an avatar's page (pipelines/gaussian_avatar/avatar_page.h): a Gaussian avatar, posed, lit, sorted and drawn here.
+// Needs no library and is embedded in the program unchanged.
 //
 // The page holds, by id of its <script> elements:
 //   avatar     JSON: gaussians n, joints, influences, key_interval, unit (metres), image_size, K [fx, fy, cx, cy], up,
@@ -10,8 +10,8 @@
 //   bones      float32, frames x joints x 3x4; NaN where nobody is shown
 //   changes    int8, key frames x 3 x n, in units: what is added to place as it is seen; keys are every key_interval-th frame and the
 //              last
-// Formulas: render/avatar/pose_gaussians.h and render/splat/project_gaussians.h. A fragment "#frame=30&yaw=90" opens it there,
-// "&plain" shows the picture alone, in its own size on black, and "&measure" counts pictures a second.
+// Formulas: render/gaussian_avatar/pose_gaussians.h and render/splat/project_gaussians.h. A fragment "#frame=30&yaw=90" opens it there,
+// "&plain" shows the image alone, at its own size on black, and "&measure" shows the frame rate.
 (() => {
   'use strict';
   const LOW_PASS = 0.2;            // px^2
@@ -38,7 +38,7 @@
   const keys = [];
   for (let t = 0; t < frames; ++t) if (t % person.key_interval === 0 || t === frames - 1) keys.push(t);
 
-  /// What a frame looks like from anywhere: places, covariance factors and colours in the frame of the camera that filmed.
+  /// View-independent data of a frame: positions, covariance factors and colours in the frame of the source camera.
   const posed = { frame: -1, middle: [0, 0, 0], place: new Float32Array(3 * n), factor: new Float32Array(9 * n), colour: new Float32Array(3 * n) };
 
   function pose(frame) {
@@ -276,8 +276,8 @@
     if (measured) return;
     element('place').textContent = `frame ${frame} of ${frames}, ${person.seconds[frame].toFixed(2)} s` + (there ? '' : ': nobody is shown');
   }
-  stage.style.maxWidth = `${80 * person.image_size[0] / person.image_size[1]}vh`; // all of a tall picture is seen at once
-  // Where pictures take long (no graphics card) they have fewer pixels while something moves.
+  stage.style.maxWidth = `${80 * person.image_size[0] / person.image_size[1]}vh`; // a tall image fits the window
+  // If rendering is slow (no GPU), the resolution is reduced during motion.
   let sharpness = 1, lastMoved = 0;
   function moved() {
     const now = performance.now(), taken = now - lastMoved;

@@ -6,8 +6,8 @@
 //   clip   JSON: seconds (one a frame, from the clip's start), people [{name, joints, status, residual_px, sigma_mm}],
 //          world_from_camera (3x4, rows), K (3x3), image_size, fps, and of a camera that moves cameras: such rows a frame
 //   glb    the scene as base64 of a .glb
-//   video  base64 of an .mp4 with a picture for each frame, evenly fps a second, or empty
-// and elements with the ids used below. A fragment "#frame=30&view=side&texture=off" opens it there; "#measure" counts pictures a second.
+//   video  base64 of an .mp4 with one image per frame at a constant fps, or empty
+// and elements with the ids used below. A fragment "#frame=30&view=side&texture=off" opens it there; "#measure" shows the frame rate.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';

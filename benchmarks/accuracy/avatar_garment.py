@@ -5,12 +5,12 @@ speed of training, at half of it, and from 90 degrees aside; and how far the gar
 both speeds, in the truth and in what is shown (`bodyloom metrics --other-truth`).
 
 usage: avatar_garment.py --bodyloom build/release/apps/bodyloom --motions ../shared/data --out FOLDER
-       [--garment skirt] [--clothes patterned] [--stuff cotton] [--person 3] [--size 512] [--seeds 1 2 3] [--steps 1500]
+       [--garment skirt] [--clothes patterned] [--material cotton] [--person 3] [--size 512] [--seeds 1 2 3] [--steps 1500]
        [--seventeen] [--frames 120] [--threads 2] [--report]
 
 FOLDER gets the dancer's datasets, a folder a run, report.md and report.json. What is there is not made again: a program
 that was stopped goes on where it was. --report only prints what there is. The truth's cloth is simulated by the same
-program, but cut by another rule and on another mesh; the fit takes it for cotton, and --stuff says whether it is. Needs
+program, but cut by another rule and on another mesh; the fit takes it for cotton, and --material says whether it is. Needs
 nothing but Python; --motions is a folder with motion/cmu_bvh and aistpp/motions.
 """
 import argparse
@@ -35,7 +35,7 @@ def make_dancer(o, name, motions, frames, more):
         return folder
     print(f"{name} …", flush=True)
     arguments = [o.bodyloom, "synth-person", "--out", str(folder), "--frames", str(frames), "--size", str(o.size), "--seed",
-                 str(o.person), "--garment", o.garment, "--clothes", o.clothes, "--stuff", o.stuff, "--threads", str(o.threads),
+                 str(o.person), "--garment", o.garment, "--clothes", o.clothes, "--material", o.material, "--threads", str(o.threads),
                  "--quiet", *more]
     for motion in motions:
         arguments += ["--motion", motion_file(o.motions, motion)]
@@ -67,7 +67,7 @@ def train_and_score(o, dances, sets, kind, seed):
 
 
 def measure_reaction(o, sets, seed):
-    """How a skirt's picture changes from the speed of training to half of it, beside how it should. A coat is a top in the
+    """Change of a skirt's image from the speed of training to half of it, against the true change. A coat is a top in the
     truth, and whatever garment is shown a bottom; a suit has none."""
     run = o.out / f"garment_{seed}"
     done = run / "reaction.json"
@@ -104,7 +104,7 @@ def reaction_table(o):
 def report(o):
     found = {(kind, seed): json.loads((o.out / f"{kind}_{seed}" / "scores.json").read_text(encoding="utf-8"))
              for kind in KINDS for seed in o.seeds if (o.out / f"{kind}_{seed}" / "scores.json").exists()}
-    lines = [f"{o.garment} of {o.stuff}, {o.clothes}, person {o.person}, {o.size} px, {o.steps} steps; mean ± standard deviation over seeds",
+    lines = [f"{o.garment} of {o.material}, {o.clothes}, person {o.person}, {o.size} px, {o.steps} steps; mean ± standard deviation over seeds",
              "", "| frames | garment | seeds | " + " | ".join(name for _, name, _ in SCORES) + " |", "|---|---|---|" + "---|" * len(SCORES)]
     for name in ["held out", *SETS]:
         for kind in KINDS:
@@ -133,7 +133,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--garment", default="skirt", choices=["skirt", "coat", "suit"])
     parser.add_argument("--clothes", default="patterned", choices=["patterned", "everyday"])
-    parser.add_argument("--stuff", default="cotton", choices=["cotton", "silk", "denim"], help="the fit always takes cotton")
+    parser.add_argument("--material", default="cotton", choices=["cotton", "silk", "denim"], help="the fit always takes cotton")
     parser.add_argument("--person", type=int, default=3, help="seed of the dancer")
     parser.add_argument("--size", type=int, default=512)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])

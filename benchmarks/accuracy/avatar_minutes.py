@@ -42,7 +42,7 @@ SCORES = (("psnr_box_db", "PSNR box, dB", 2), ("psnr_person_db", "PSNR person, d
 
 
 class Truth:
-    """The pictures of a dataset over black, and where the person is."""
+    """Images of a dataset over black, and masks of the person."""
 
     def __init__(self, o, folder):
         size = (o.size, o.size)
@@ -215,7 +215,7 @@ def main():
     parser.add_argument("--paced-by", type=float, default=0, metavar="MINUTES", help="the shorter runs that say how many steps a time has")
     parser.add_argument("--report", action="store_true", help="only print what there is")
     o = parser.parse_args()
-    o.garment, o.clothes, o.stuff = "skirt", "patterned", "cotton"
+    o.garment, o.clothes, o.material = "skirt", "patterned", "cotton"
     o.out.mkdir(parents=True, exist_ok=True)
     if not o.report:
         dances = make_dancer(o, "dances", TRAIN, 120, ["--speed", "1", "--speed", "0.5"])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Command lines of the benchmarks: "--name value" pairs, lists separated by commas.
+/// Parses command lines of the benchmarks: "--name value" pairs, lists separated by commas.
 #pragma once
 
 #include <functional>
@@ -22,11 +22,11 @@ class BenchArguments {
   std::map<std::string, std::string> values_;
 };
 
-/// The default of a "motions" option: the folders of recorded motion below SharedDir().
+/// Default of a "motions" option: the folders of recorded motion below SharedDir().
 std::string SharedMotions();
 
-/// main() of a benchmark: runs it with its arguments and the command as it was called. --help lists the options. Exit
-/// code 1, with one line on stderr, for anything thrown.
+/// main() of a benchmark: runs it with its arguments and its command line. --help lists the options. Exit code 1, with
+/// one line on stderr, for any exception.
 int BenchMain(const std::string& program, int argc, char** argv, std::map<std::string, std::string> known,
               const std::function<void(const BenchArguments& arguments, const std::string& command)>& run);
 

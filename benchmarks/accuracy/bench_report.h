@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A benchmark's report: rows of labels and numbers, their mean and spread by group, commit and machine.
+/// Report of a benchmark: rows of labels and numbers, their mean and spread by group, commit and machine.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace bodyloom {
 
 struct BenchRow {
   std::string group;                ///< rows of one group are averaged ("known focal length")
-  std::vector<std::string> labels;  ///< one a label column
-  std::vector<double> values;       ///< one a value column; NaN prints as "-"
+  std::vector<std::string> labels;  ///< one per label column
+  std::vector<double> values;       ///< one per value column; NaN prints as "-"
 };
 
 struct PlotLine {
@@ -39,7 +39,7 @@ struct BenchReport {
   bool summarise = true;    ///< close each group with the mean and spread of its rows
 };
 
-/// A table a group, each closed by "mean" and "std" (population, over its rows) when requested, then notes, commit and
+/// One table per group, ending with "mean" and "std" (population, over its rows) if requested, then notes, commit and
 /// machine.
 std::string BenchText(const BenchReport& report);
 
@@ -54,8 +54,8 @@ void HandOver(const BenchReport& report, const std::string& json_path);
 /// Commit of the source tree ("… with changes" when it has any), processor, cores, compiler and flags.
 std::vector<std::pair<std::string, std::string>> BenchEnvironment();
 
-/// A number as the tables show it: whole numbers as they are, else three digits after the point below ten, one above;
-/// tiny ones as 2e-07; "-" for none.
+/// Formats a number for the tables: integers unchanged, else three decimals below ten and one above; tiny numbers as
+/// 2e-07; "-" for NaN.
 std::string BenchNumber(double value);
 
 }  // namespace bodyloom

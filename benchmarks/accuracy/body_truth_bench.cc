@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a clip's own labels and normals are worth (data_tools/datasets/body_truth.h): those of the true body within the
-// true outline beside the truth. `bodyloom_bench_body_truth --data a,b --step 5`, single-person datasets, every fifth
-// frame. The outline and the body are given without error, so this is the least that they are off by.
+// Error of labels and normals derived from a tracked body (data_tools/datasets/body_truth.h): those of the true body
+// within the true outline, against the truth. `bodyloom_bench_body_truth --data a,b --step 5`, single-person datasets,
+// every fifth frame. Outline and body are exact, so this is a lower bound of the error.
 #include <algorithm>
 #include <array>
 #include <cmath>

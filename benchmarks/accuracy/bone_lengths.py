@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What right body proportions would bring: tracks of AIST++ from one camera, their bones set to the truth's lengths afterwards.
+"""Effect of correct body proportions: tracks of AIST++ from one camera with bones set to the true lengths afterwards.
 
 usage: PYTHONPATH=BUILD/python bone_lengths.py AISTPP [--views c01 …]
   AISTPP: a folder with keypoints2d/, keypoints3d/ and cameras/

@@ -74,7 +74,7 @@ def main():
             mask, report = o.out / f"{clip.name}_{kind}.npz", o.out / f"{clip.name}_{kind}.json"
             call([o.bodyloom, "detect", "--video", str(video), "--mask", str(mask), "--json", str(report), *more], o.out / "log.txt")
             told = json.loads(report.read_text(encoding="utf-8"))
-            iou, least, missing, beside = score(masks(mask) > 0, truth)
+            iou, minimum, missing, beside = score(masks(mask) > 0, truth)
             name = kind if kind == "network" or told["masks_cut"] else "left as they are"
             lines.append(f"| {garment}, {motion.split('/')[-1]} | {name} | {iou:.4f} | {least:.3f} | {100 * missing:.2f} % | {100 * beside:.2f} % | "
                          f"{told['total_seconds']:.1f} |")

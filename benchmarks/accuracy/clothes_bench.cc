@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// bodyloom_bench_clothes: what one picture's mask says of clothes, beside what synthetic people wear.
+/// bodyloom_bench_clothes: compares the clothes estimated from the mask of one image with those of synthetic people.
 ///
 ///   bodyloom_bench_clothes [--people FOLDER] [--split test|train] [--frame 0] [--each 0|1] [--threads 1] [--json F]
 ///
 /// FOLDER is a multi-person dataset of `bodyloom synth-people`. Frame --frame of every clip is taken as a photo: its
-/// mask, its true pose and shape, the true camera. By garment: pictures, the share in which a loose garment is found
-/// (render/garment/fit_clothes.h), E of the silhouettes with clothes close to the skin alone and with what was chosen,
-/// and the time of a fit. Garments of the dataset are of the same family of shapes as the fit's, simulated with other
-/// cloth.
+/// mask, its true pose and shape, the true camera. By garment: images, the share in which a loose garment is found
+/// (render/garment/fit_clothes.h), E of the silhouettes with tight clothes only and with the selected clothes, and the
+/// time of a fit. Garments of the dataset have the fit's family of shapes, simulated with other cloth.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -55,12 +54,12 @@ void Judge(const std::string& clip, int frame, bool each, int threads, std::map<
   Fits& of = (*fits)[set.info().garment];
   of.seconds.push_back(watch.seconds());
   of.loose.push_back(loose ? 1 : 0);
-  of.close.push_back(fitted.unlike_close);
-  of.chosen.push_back(loose ? fitted.unlike_loose : fitted.unlike_close);
+  of.close.push_back(fitted.mask_error_tight);
+  of.chosen.push_back(loose ? fitted.mask_error_with_garment : fitted.mask_error_tight);
   if (each) {
     std::fprintf(stderr, "%s %s: E %.3f close, %.3f loose; waist %.2f length %.2f fullness %.2f\n", clip.c_str(),
-                 set.info().garment.c_str(), fitted.unlike_close, fitted.unlike_loose, fitted.garment.waist_y_m,
-                 fitted.garment.length_m, fitted.garment.fullness);
+                 set.info().garment.c_str(), fitted.mask_error_tight, fitted.mask_error_with_garment,
+                 fitted.garment.waist_y_m, fitted.garment.length_m, fitted.garment.fullness);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From how far off the solve still finds the person: success rate against starting error.
+/// Convergence basin of the solve: success rate against initial error.
 ///
 ///   bodyloom_bench_convergence [--starts 20] [--frames 4] [--solver ceres] [--json F] [--markdown F]
 ///

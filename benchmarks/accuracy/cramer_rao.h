@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The Cramér–Rao bound of a clip: how accurate a fit can be at best, carried over to pixels.
+/// Computes the Cramér–Rao bound of a clip, the best accuracy that a fit can have, propagated to pixels.
 ///
 /// With residuals r(x) of unit variance, independent and Gaussian, any unbiased estimate of x has
 ///   Cov(x̂) ⪰ Λ⁻¹,  Λ = JᵀJ,  J = ∂r/∂x at the truth,

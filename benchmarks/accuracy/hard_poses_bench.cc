@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Fits the body to single pictures of people in hard poses, from 2D joints and a silhouette, and measures the distance
-/// to another system's reconstruction of the same picture (SAM 3D Body; shared/data/mhr_sam3d).
+/// Fits the body to single images of people in hard poses, from 2D joints and a silhouette, and measures the distance
+/// to another system's reconstruction of the same image (SAM 3D Body; shared/data/mhr_sam3d).
 ///
 ///   bodyloom_bench_hard_poses [--data DIR] [--threads 2] [--picture F.png] [--json F]
 ///
@@ -111,7 +111,7 @@ MatrixX3d BodyJoints(const MatrixX3d& coco17) {
 
 double MeanDistance(const MatrixX3d& a, const MatrixX3d& b) { return (a - b).rowwise().norm().mean(); }
 
-Image Picture(const Person& person, const Track& track) {
+Image DrawPose(const Person& person, const Track& track) {
   Image background(person.camera.width, person.camera.height, {245, 245, 245});
   int x_begin = background.width, x_end = 0;
   for (int y = 0; y < background.height; ++y) {
@@ -136,7 +136,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   const std::string data = arguments.Text("data");
   const NpzArrays scene = ReadNpz(data + "/smpltopo_dense_subj00_01.npz");
   BenchReport report;
-  report.title = "Hard poses: one picture, 2D joints and silhouette, against SAM 3D Body";
+  report.title = "Hard poses: one image, 2D joints and silhouette, against SAM 3D Body";
   report.command = command;
   report.label_columns = {"person", "from"};
   report.value_columns = {"mpjpe_mm",
@@ -148,7 +148,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
                           "seconds"};
   report.notes = {"joints: nose and 12 limb joints, mid-hip on mid-hip; surfaces: nearest points, each way",
                   Concatenate("threads: ", arguments.Integer("threads"))};
-  std::vector<Image> pictures;
+  std::vector<Image> images;
   for (int subject = 0; subject < 2; ++subject) {
     const Person person = ReadPerson(data, subject, scene);
     for (const bool silhouette : {false, true}) {
@@ -179,7 +179,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
             1e3 * NearestDistance(placed, person.vertices), 1e3 * NearestDistance(person.vertices, placed),
             1e3 * NearestDistance(aligned, person.vertices), 1e3 * NearestDistance(person.vertices, aligned),
             seconds}});
-      pictures.push_back(Picture(person, result.track));
+      images.push_back(DrawPose(person, result.track));
     }
   }
   HandOver(report, arguments.Text("json"));
@@ -187,7 +187,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
     ContactSheetOptions sheet;
     sheet.columns = 4;
     sheet.cell_height_px = 720;
-    WriteImage(arguments.Text("picture"), ContactSheet(pictures, sheet));
+    WriteImage(arguments.Text("picture"), ContactSheet(images, sheet));
   }
 }
 

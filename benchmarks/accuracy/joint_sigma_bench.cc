@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// bodyloom_bench_joint_sigma: whether joint_sigma is the spread of the tracker's errors and tells where it errs.
+/// bodyloom_bench_joint_sigma: calibration of joint_sigma against the tracker's errors, and its correlation with them.
 ///
 ///   bodyloom_bench_joint_sigma [--motions FOLDER[,FOLDER…]] [--split test|train] [--every 1] [--frames 240]
 ///                              [--data AISTPP] [--views c01,c03,c05,c07,c08] [--json F]

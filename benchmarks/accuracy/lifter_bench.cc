@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// bodyloom_bench_lifter: the lifter alone on motion it has not seen.
+/// bodyloom_bench_lifter: error of the lifter alone on motion not seen in training.
 ///
 ///   bodyloom_bench_lifter --motions FOLDER[,FOLDER…] [--lifter built-in|FILE] [--windows 400]
 ///                         [--detections users|steady|exact] [--split test|train] [--json F]

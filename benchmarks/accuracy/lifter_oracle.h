@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Oracle of the lifter: its predictions with a part of the truth, which show where a track's error comes from.
+/// Oracle of the lifter: its predictions with a part replaced by the truth, to attribute a track's error.
 #pragma once
 
 #include <string>
@@ -16,9 +16,9 @@
 
 namespace bodyloom {
 
-/// The lifter's reading of `keypoints` as the tracker would make it, corrected by the truth (T frames of COCO-17,
-/// camera axes, any unit): "truth", "torso", "lean", "best", "arms" or "legs" as bodyloom_bench_aist says; throws
-/// std::invalid_argument for another word. Frames whose truth is not finite stay as they are.
+/// The lifter's result for `keypoints` as in the tracker, corrected by the truth (T frames of COCO-17, camera axes, any
+/// unit). `oracle` is "truth", "torso", "lean", "best", "arms" or "legs" as in bodyloom_bench_aist; throws
+/// std::invalid_argument for another word. Frames whose truth is not finite are unchanged.
 std::vector<LiftedFrame> LiftWithOracle(const KeypointSequence& keypoints, CameraKnowledge knowledge,
                                         const Camera& camera, const LifterWeights& weights,
                                         const std::vector<MatrixX3d>& truth, const std::string& oracle);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// bodyloom_bench_limb_choice: would a clip be followed better if the right hypothesis of a limb were known, and does
-/// what the clip shows tell which one it is?
+/// bodyloom_bench_limb_choice: gain of knowing each limb's correct hypothesis, and tests of whether the clip itself
+/// reveals it.
 ///
 ///   bodyloom_bench_limb_choice [--data AISTPP] [--sequences A,B] [--views c02,c04,c06,c09] [--window 8] [--loose 20]
 ///                              [--rounds 3] [--json F]
@@ -178,7 +178,7 @@ Choice Choose(const Clip& clip, const Solved& expected, int limb, int begin, int
 
 /// The clip's hypotheses weighed by their distance from an answer.
 std::vector<LiftedFrame> Reweighed(const Clip& clip, const Solved& solved, double tau) {
-  constexpr double kLeastSigma = 0.03;
+  constexpr double kMinSigma = 0.03;
   std::vector<LiftedFrame> frames = clip.lifted;
   for (size_t t = 0; t < frames.size(); ++t) {
     const Eigen::RowVector3d hip = 0.5 * (solved.joints[t].row(11) + solved.joints[t].row(12));
@@ -191,7 +191,7 @@ std::vector<LiftedFrame> Reweighed(const Clip& clip, const Solved& solved, doubl
         for (size_t i = 0; i < kScoredPoints; ++i) {
           const Eigen::RowVector3d found = solved.joints[t].row(LifterOutput::LimbPoints(limb)[i]) - hip;
           const Vector3d off = axes.transpose() * (found.transpose() / solved.metres - guess.points[i]);
-          const Eigen::Vector2d sigma = guess.sigma[i].cwiseMax(kLeastSigma);
+          const Eigen::Vector2d sigma = guess.sigma[i].cwiseMax(kMinSigma);
           squared += off.head<2>().squaredNorm() / (sigma.x() * sigma.x()) + std::pow(off.z() / sigma.y(), 2);
         }
         sum += guess.weight *= std::exp(-0.5 * tau * squared);

@@ -68,12 +68,12 @@ DescriptorRows DenseCoordinates(const PersonFrames& frames, int past) {
 std::vector<int> Peaks(std::span<const float> curve, double share, int reach) {
   std::vector<int> peaks;
   if (curve.empty()) return peaks;
-  const double least = share * *std::max_element(curve.begin(), curve.end());
+  const double minimum = share * *std::max_element(curve.begin(), curve.end());
   const int count = static_cast<int>(curve.size());
   for (int i = 1; i + 1 < count; ++i) {
     const int begin = std::max(0, i - reach), end = std::min(count, i + reach + 1);
     const auto largest = std::max_element(curve.begin() + begin, curve.begin() + end);
-    if (largest - curve.begin() == i && curve[i] >= least) peaks.push_back(i);
+    if (largest - curve.begin() == i && curve[i] >= minimum) peaks.push_back(i);
   }
   return peaks;
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The renderers that need one photo under one protocol: the same people, photos and pictures, the same scores, with true
+"""The renderers that need one photo under one protocol: the same people, photos and images, the same scores, with true
 labels and bodies and with estimated ones; beside them what needs no training, a textured body with clothes (person) and
 the photo warped by the bare body (floor); the one-photo renderer's simpler variants (Sec. 4.4 of Sarkar et al., "Neural
 Re-Rendering of Humans from a Single Image", ECCV 2020) and the ablations of the pose-guided renderer (Table 2 of Yoon
@@ -75,7 +75,7 @@ def track_test_people(o, people):
             print(f"bodies of {clip} …", flush=True)
             out = folder / "tracking"
             code = exit_code([o.bodyloom, "run", str(folder / "images"), "--out", str(out), "--people", "1", "--no-overlay",
-                              "--least-seconds", "0"], o.out / "people.log")
+                              "--min-seconds", "0"], o.out / "people.log")
             lines = (o.out / "people.log").read_text(encoding="utf-8").splitlines()
             if code != 0 and ": nobody " not in lines[-1]:  # stopped, or something else is wrong
                 sys.exit(f"stopped in, or failed: {clip}; see {o.out / 'people.log'}")

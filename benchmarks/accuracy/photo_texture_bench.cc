@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the textures of photos are worth before any network sees them: guesses at what a photo does not show, and
-// unions of two photos, beside what the person's other pictures show. `bodyloom_bench_photo_texture --data people`, a
-// multi-person dataset (bodyloom synth-people), whose true labels and bodies are used.
+// Quality of photo textures without networks: completions of what a photo does not show, and unions of two photos,
+// against the person's other images. `bodyloom_bench_photo_texture --data people`, a multi-person dataset (bodyloom
+// synth-people), whose true labels and bodies are used.
 //
-// The truth of a texel is its colour in a third picture that sees it at a cosine of at least 0.7; the light differs
-// between pictures, so that no error can be 0. Mean absolute differences of RGB in [0, 1].
+// The truth of a texel is its colour in a third image that sees it at a cosine of at least 0.7; the light differs
+// between images, so that no error can be 0. Mean absolute differences of RGB in [0, 1].
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures and videos as NumPy arrays, by ffmpeg; masks."""
+"""Images and videos as NumPy arrays, by ffmpeg; masks."""
 import subprocess
 
 import numpy as np
 
 
 def decoded(source, width, height, channels=3):
-    """(T, height, width, channels) bytes, RGB or RGBA, of a video, a picture, or numbered pictures (%06d.png)."""
+    """(T, height, width, channels) bytes, RGB or RGBA, of a video, an image, or numbered images (%06d.png)."""
     raw = subprocess.run(["ffmpeg", "-v", "error", "-i", str(source), "-f", "rawvideo", "-pix_fmt",
                           "rgba" if channels == 4 else "rgb24", "-"], check=True, capture_output=True).stdout
     return np.frombuffer(raw, np.uint8).reshape(-1, height, width, channels)
 
 
 def write(path, pixels, options=()):
-    """A picture of (height, width, 3) bytes, in the format of its name; `options` are ffmpeg's."""
+    """Writes an image of (height, width, 3) bytes, in the format of its name; `options` are ffmpeg's."""
     subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
                     f"{pixels.shape[1]}x{pixels.shape[0]}", "-i", "-", "-frames:v", "1", *options, str(path)],
                    input=pixels.tobytes(), check=True)

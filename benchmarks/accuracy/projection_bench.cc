@@ -7,7 +7,7 @@
 ///                             [--dense 300] [--threads 2] [--json F]
 ///
 /// Inputs:
-///   joints           the 17 joints that a detector found in the real pictures (AIST++'s keypoints2d)
+/// the 17 joints that a detector found in the real images (AIST++'s keypoints2d)
 ///   rendered-joints  the same landmarks of the published motion's body, with detector-like noise
 ///   dense            surface keypoints of that body with noise `densepose` (dense_clips.h), from a start 14.8 px off
 ///   dense+joints     both, the joints the detector's; started from the joints
@@ -39,7 +39,7 @@ namespace {
 
 constexpr double kInitialError_px = 14.8;  // VIBE's of the table
 
-/// What the tracker is given of a view, and what it is judged by.
+/// Inputs of the tracker for a view, and their truth.
 struct View {
   const RigView* recorded = nullptr;
   PseudoTruth truth;
@@ -128,7 +128,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       "protocol aist-held-out, known focal length; built-in body, whose shape and place are fitted to the "
       "clip's 3D landmarks with the published rotations",
       "truth_landmark: how far the truth's own landmarks are from the recording's",
-      "paper A, Table 4, from pictures, on SMPL: SPIN 21.0 +- 5.2, VIBE 14.8 +- 3.4, SMPLify-X 11.9 +- 4.5, "
+      "paper A, Table 4, from images, on SMPL: SPIN 21.0 +- 5.2, VIBE 14.8 +- 3.4, SMPLify-X 11.9 +- 4.5, "
       "theirs 10.5 +- 2.1",
       Concatenate("threads: ", arguments.Integer("threads"))};
   for (const std::string& sequence : arguments.List("sequences")) {

@@ -14,7 +14,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kLeastSeen = 0.25;
+constexpr double kMinSeen = 0.25;
 
 struct RegionPlan {
   const char* name;
@@ -115,11 +115,11 @@ std::vector<bool> RegionSeen(const PersonFrames& frames, const RegionOfBody& reg
   }
   std::vector<ptrdiff_t> sorted = pixels;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double least = kLeastSeen * static_cast<double>(sorted[sorted.size() / 2]);
+  const double minimum = kMinSeen * static_cast<double>(sorted[sorted.size() / 2]);
   std::vector<bool> seen(pixels.size(), true);
   for (size_t t = 0; t < pixels.size(); ++t) {
     for (size_t k = 0; k < size_t(past) && k <= t; ++k) {
-      seen[t] = seen[t] && pixels[t - k] > 0 && static_cast<double>(pixels[t - k]) >= least;
+      seen[t] = seen[t] && pixels[t - k] > 0 && static_cast<double>(pixels[t - k]) >= minimum;
     }
   }
   return seen;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Retrieval by a part of the body (motion_retrieval.h): hand, torso or leg, as Yoon et al. (CVPR 2022, Fig. 4)
-/// retrieve patches. A camera's descriptor of a part says nothing while the body hides the part; the 3D descriptor
-/// knows no view.
+/// Retrieves motion by a part of the body (motion_retrieval.h): hand, torso or leg, as Yoon et al. (CVPR 2022, Fig. 4)
+/// retrieve patches. An image-space descriptor of a part is undefined while the body occludes the part; the 3D
+/// descriptor does not depend on the view.
 #pragma once
 
 #include <vector>
@@ -16,27 +16,26 @@ enum class RetrievedRegion { kHand, kTorso, kLeg };
 /// "hand", "torso", "leg".
 const char* RegionName(RetrievedRegion region);
 
-/// Of the person's right side, by DensePose's charts: hand and lower arm; both charts of the torso; the leg without the
-/// foot. By COCO's landmarks: wrist and elbow; shoulders and hips; knee and ankle.
+/// A region of the person's right side. DensePose charts: hand and lower arm; both charts of the torso; the leg without
+/// the foot. COCO landmarks: wrist and elbow; shoulders and hips; knee and ankle.
 struct RegionOfBody {
   std::vector<int> landmarks;  ///< indices into CocoNames()
-  int side = 0;                ///< texels of the atlas' sides
-  std::vector<bool> texels;    ///< side × side, row-major: whether one belongs to the region
+  int side = 0;                ///< side length of the atlas, texels
+  std::vector<bool> texels;    ///< side × side, row-major: true if in the region
 };
 
 /// Throws std::invalid_argument when the body has no 24 parts or no UV coordinates, or side is out of range.
 RegionOfBody MakeRegion(const BodyModel& body, RetrievedRegion region, int side);
 
-/// Columns of KeypointTrajectories() that are of the region: its landmarks, still relative to the mean of all 17.
+/// Columns of KeypointTrajectories() of the region's landmarks, still relative to the mean of all 17.
 DescriptorRows KeypointsOfRegion(const DescriptorRows& whole, const RegionOfBody& region);
-/// DenseCoordinates() with all pixels 0 that do not see the region.
+/// DenseCoordinates() with all pixels outside the region set to 0.
 DescriptorRows DenseCoordinatesOfRegion(const PersonFrames& frames, const RegionOfBody& region, int past);
-/// Columns of MotionDescriptors() that are the region's texels. Throws std::invalid_argument when its atlas is of
-/// another size.
+/// Columns of MotionDescriptors() of the region's texels. Throws std::invalid_argument when its atlas has another size.
 DescriptorRows MotionOfRegion(const DescriptorRows& whole, const RegionOfBody& region);
 
-/// Frames in which the camera sees at least a quarter of the pixels of the region that it sees in the median frame, and
-/// did in each of the past − 1 frames before.
+/// True for frames in which at least a quarter of the region's pixels in the median frame is visible, as in each of the
+/// past − 1 frames before.
 std::vector<bool> RegionSeen(const PersonFrames& frames, const RegionOfBody& region, int past);
 
 }  // namespace bodyloom

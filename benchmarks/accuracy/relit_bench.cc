@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures in another light beside the truth in that light: `bodyloom_bench_relit --truth other --results a,b`, single-
-// person datasets of one person and motion: the person as `bodyloom synth-person --light-seed` shows it, and what
-// `bodyloom animate motion --relight --full-size --set` made of the same in its own light.
+// Error of relit images: `bodyloom_bench_relit --truth other --results a,b`, single-person datasets of one person and
+// motion: the truth rendered by `bodyloom synth-person --light-seed`, and results of `bodyloom animate motion --relight
+// --full-size --set` from images in the original light.
 //
-// Over the pixels that both call person. No picture tells how bright the new light is beside the old one, so PSNR is
-// also given after one gain for the clip, the one that makes it best; channels in [0, 255].
+// Over the pixels that are person in both. Images do not show the new light's brightness relative to the old one, so
+// PSNR is also given after the best single gain for the clip; channels in [0, 255].
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -54,7 +54,7 @@ void AddFrame(const PersonFrame& result, const PersonFrame& truth, Comparison* s
 
 void Run(const BenchArguments& arguments, const std::string& command) {
   const SinglePersonDataset truth(arguments.Text("truth"));
-  std::printf("%s\n\n| pictures | normals, degrees | gain | PSNR dB | PSNR dB after the gain | pixels |\n",
+  std::printf("%s\n\n| images | normals, degrees | gain | PSNR dB | PSNR dB after the gain | pixels |\n",
               command.c_str());
   std::printf("|---|---|---|---|---|---|\n");
   for (const std::string& path : arguments.List("results")) {
@@ -65,7 +65,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
     }
     Comparison sums;
     for (int t = 0; t < truth.info().num_frames; ++t) {
-      const PersonPictures wanted = {true, true, false, false};
+      const RenderedPeople wanted = {true, true, false, false};
       AddFrame(result.Read(t, wanted), truth.Read(t, wanted), &sums);
     }
     std::printf("| %s | %.2f | %.3f | %.2f | %.2f | %ld |\n", path.c_str(), sums.degrees / std::max(1L, sums.normals),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the rendered-UV term (L_r) and the part-label terms buy, and what they cost.
+/// Benefit and cost of the rendered-UV term (L_r) and of the part-label terms.
 ///
 ///   bodyloom_bench_rendered_uv [--what dense,basin,labels] [--motions A.pkl,B.bvh] [--noise pixel,uv,densepose]
 ///                              [--residuals "reprojection,whitened,rendered UV"] [--dense 300] [--initial 14.8]

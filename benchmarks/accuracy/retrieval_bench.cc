@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a descriptor of motion can tell apart (Yoon et al., CVPR 2022, Fig. 4): a person turns left and right again and
-/// again before one camera; each moment of the first cycle is looked for in the cycles that follow.
+/// Discriminative power of descriptors of motion (Yoon et al., CVPR 2022, Fig. 4): a person repeatedly turns left and
+/// right before one camera; each moment of the first cycle is searched for in the following cycles.
 ///
 ///   bodyloom_bench_retrieval [--cycles 6] [--period 2] [--amplitude 60] [--variation 0.1] [--noise_px 0,2]
-///                            [--noise_deg 0,1] [--uv 32] [--window 48] [--seeds 3] [--threads 2] [--plot F.svg]
-///                            [--json F]
+///                            [--noise_deg 0,1] [--uv 32] [--window 48] [--seeds 3] [--threads 2] [--json F]
 ///
-/// Rows of the table (docs/lab/retrieval.md): COCO-17 trajectories, atlas coordinates as the camera sees
-/// them, the 3D motion descriptor; the first with noise in pixels, the others from a track with noise in degrees; then
-/// the same of a hand, the torso and a leg alone, where a camera's descriptors count while it sees the region. The
-/// plot shows, for the moment at which the person of the first seed, without noise, passes the middle of the first
-/// cycle's first half, its correlation with all later frames.
+/// Rows of the table (docs/lab/retrieval.md): COCO-17 trajectories, atlas coordinates as seen by the camera, the 3D
+/// motion descriptor; the first with noise in pixels, the others from a track with noise in degrees; then the same of a
+/// hand, the torso and a leg alone, where image-space descriptors count while the region is visible. The JSON holds a
+/// plot (benchmarks/report/draw_plots.py): for the moment at which the person of the first seed, without noise, passes
+/// the middle of the first cycle's first half, its correlation with all later frames.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,7 +21,6 @@
 #include "benchmarks/accuracy/motion_retrieval.h"
 #include "benchmarks/accuracy/region_retrieval.h"
 #include "data_tools/body/builtin_body.h"
-#include "data_tools/formats/atomic_file.h"
 #include "geometry/base/check.h"
 
 namespace bodyloom {
@@ -64,9 +60,9 @@ NamedDescriptors DescriptorsOf(const TurningPerson& person, double noise_px, con
   return all;
 }
 
-/// A curve a descriptor, one below the other; lines where cycles meet, dots at the peaks.
-std::string Plot(const TurningPerson& person, const NamedDescriptors& descriptors) {
-  constexpr int kLeft = 50, kTop = 34, kWidth = 840, kHeight = 74, kPitch = 112;
+/// The correlation of one moment, at which the person faces the camera, with all frames after the first cycle: a curve
+/// for each descriptor of the whole body.
+Plot PlotCorrelations(const TurningPerson& person, const NamedDescriptors& descriptors) {
   const std::vector<int> turning = TurningFrames(person, true);
   // Facing the camera: the middle of the first half turn.
   const int query =
@@ -75,43 +71,21 @@ std::string Plot(const TurningPerson& person, const NamedDescriptors& descriptor
   const auto first =
       static_cast<int>(std::upper_bound(person.cycle.begin(), person.cycle.end(), 0) - person.cycle.begin());
   const int count = static_cast<int>(person.cycle.size()) - first;
-  const auto x_of = [&](int i) { return kLeft + double(kWidth) * i / std::max(1, count - 1); };
-  std::ostringstream svg;
-  svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"920\" height=\"" << kTop + kPitch * descriptors.size()
-      << "\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-  for (size_t d = 0; d < descriptors.size(); ++d) {
-    const DescriptorRows& rows = descriptors[d].rows;
-    const Eigen::MatrixXf correlation = NormalisedCrossCorrelation(rows.bottomRows(count), rows.row(query));
-    const std::vector<float> curve(correlation.data(), correlation.data() + count);
-    const double top = kTop + double(kPitch) * double(d);
-    // Curves are stretched to their own range, which the axis tells.
-    const auto [low, high] = std::minmax_element(curve.begin(), curve.end());
-    const double range = std::max(1e-6, double(*high) - *low);
-    const auto y_of = [&, low = *low](float value) { return top + kHeight * (1 - (value - low) / range); };
-    char text[160];
-    const std::vector<int> peaks = Peaks(curve, 0.9, 4);
-    std::snprintf(text, sizeof(text), "%.2f peaks a cycle at this moment", double(peaks.size()) / person.cycle.back());
-    svg << "<text x=\"" << kLeft << "\" y=\"" << top - 8 << "\"><tspan font-weight=\"bold\">" << descriptors[d].name
-        << "</tspan>: " << text << "</text>\n";
-    for (const float value : {*low, *high}) {
-      std::snprintf(text, sizeof(text), "%.2f", value);
-      svg << "<text x=\"" << kLeft - 6 << "\" y=\"" << y_of(value) + 4 << "\" text-anchor=\"end\" fill=\"#666\">"
-          << text << "</text>\n";
-    }
-    for (int i = 0; i < count; ++i) {
-      if (i > 0 && person.cycle[first + i] == person.cycle[first + i - 1]) continue;
-      svg << "<path d=\"M" << x_of(i) << ' ' << top << 'v' << kHeight << "\" stroke=\"#bbb\"/>\n";
-    }
-    svg << "<polyline fill=\"none\" stroke=\"" << (d + 1 == descriptors.size() ? "#1565c0" : "#c62828")
-        << "\" stroke-width=\"1.6\" points=\"";
-    for (int i = 0; i < count; ++i) svg << x_of(i) << ',' << y_of(curve[i]) << ' ';
-    svg << "\"/>\n";
-    for (const int i : peaks) {
-      svg << "<circle cx=\"" << x_of(i) << "\" cy=\"" << y_of(curve[i]) << "\" r=\"4\" fill=\"black\"/>\n";
-    }
+  Plot plot;
+  plot.file = "retrieval";
+  plot.title = "Correlation of one moment with the cycles that follow";
+  plot.x_label = "frames";
+  plot.y_label = "normalised cross-correlation";
+  plot.log_x = plot.log_y = false;
+  for (const NamedDescriptor& descriptor : descriptors) {
+    if (descriptor.name.find(": ") != std::string::npos) continue;  // of a region alone
+    const Eigen::MatrixXf correlation =
+        NormalisedCrossCorrelation(descriptor.rows.bottomRows(count), descriptor.rows.row(query));
+    PlotLine& line = plot.lines.emplace_back();
+    line.name = descriptor.name;
+    for (int i = 0; i < count; ++i) line.points.push_back({double(i), double(correlation.data()[i])});
   }
-  svg << "</svg>\n";
-  return svg.str();
+  return plot;
 }
 
 void Run(const BenchArguments& arguments, const std::string& command) {
@@ -141,9 +115,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
                         {s.peaks_a_cycle, 100 * s.one_peak_share, 100 * s.direction_share, s.yaw_error_deg,
                          100 * s.answered_share}});
       }
-      if (n == 0 && seed == 1 && !arguments.Text("plot").empty()) {
-        WriteFileAtomically(arguments.Text("plot"), Plot(person, descriptors));
-      }
+      if (n == 0 && seed == 1) report.plots.push_back(PlotCorrelations(person, descriptors));
     }
     std::stable_sort(rows.begin(), rows.end(), [](const BenchRow& a, const BenchRow& b) { return a.group < b.group; });
     report.rows.insert(report.rows.end(), rows.begin(), rows.end());
@@ -166,7 +138,6 @@ int main(int argc, char** argv) {
                               {"window", "48"},
                               {"seeds", "3"},
                               {"threads", "2"},
-                              {"plot", ""},
                               {"json", ""}},
                              bodyloom::Run);
 }

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the benchmarks that train and score many runs share: commands whose lines go to a log, means over seeds."""
+"""Shared code of the benchmarks that train and score many runs: commands with logs, means over seeds."""
 import math
 import subprocess
 import sys
 
 
 def exit_code(arguments, log):
-    """Runs a command to its end; its lines go to `log`."""
+    """Runs a command to completion; its output is appended to `log`."""
     with open(log, "a", encoding="utf-8") as lines:
         lines.write(" ".join(arguments) + "\n")
         lines.flush()

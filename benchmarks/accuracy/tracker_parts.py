@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What each part of the tracker costs and what it brings: `bodyloom track` on AIST++'s clips without one part at a time.
+"""Cost and benefit of each part of the tracker: `bodyloom track` on AIST++'s clips without one part at a time.
 
 usage: tracker_parts.py --bodyloom build/release/apps/bodyloom --data AISTPP [--views c01 …] [--repeat 3] [--threads 2]
   --data: a folder with keypoints2d/, keypoints3d/, motions/ and cameras/

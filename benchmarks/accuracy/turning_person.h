@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person who turns left and right on the spot, again and again, seen by one camera in front: the motion with which
-/// Yoon et al. (CVPR 2022, Fig. 4) show what descriptors of motion can and cannot tell apart.
+/// Synthesises a person who repeatedly turns left and right on the spot in front of one camera: the motion with which
+/// Yoon et al. (CVPR 2022, Fig. 4) compare descriptors of motion.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 namespace bodyloom {
 
 struct TurningPersonOptions {
-  int cycles = 6;             ///< after one to start with
+  int cycles = 6;             ///< after one initial cycle
   double period_s = 2;        ///< left, right and back
   double amplitude_deg = 60;  ///< to each side of facing the camera
   double variation = 0.1;     ///< amplitudes and periods vary by up to this share, arms by up to 40° times it
-  double pose_noise_deg = 0;  ///< of every joint and frame, as a tracker leaves it; standard deviation an axis
+  double pose_noise_deg = 0;  ///< of every joint and frame, like a tracker's; standard deviation per axis
   double fps = 30;
   int image_size = 512;
   uint64_t seed = 1;
@@ -24,14 +24,14 @@ struct TurningPersonOptions {
 
 struct TurningPerson {
   Track track;                         ///< camera frame, pinhole, 4 m away
-  std::vector<int> cycle;              ///< by frame; −1: the one to start with
+  std::vector<int> cycle;              ///< by frame; −1: the initial cycle
   std::vector<double> yaw_deg;         ///< of the chest, positive to the person's left
-  std::vector<double> yaw_rate_deg_s;  ///< the same but for noise
+  std::vector<double> yaw_rate_deg_s;  ///< its rate, without noise
 };
 
-/// Yaw runs from one turning point to the next as half a cosine, so its rate is zero there and changes smoothly but for
-/// the acceleration. A cycle goes from left to left. The pelvis takes 40 % of the turn, the spine the rest; arms hang.
-/// Throws std::invalid_argument for options out of range or a body without SMPL's 24 joints.
+/// Yaw between two turning points is half a cosine, so its rate is zero there and continuous. A cycle goes from left to
+/// left. The pelvis takes 40 % of the turn, the spine the rest; arms hang. Throws std::invalid_argument for options out
+/// of range or a body without SMPL's 24 joints.
 TurningPerson MakeTurningPerson(const BodyModel& body, const TurningPersonOptions& options = {});
 
 }  // namespace bodyloom

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How right a track's world is, where a calibration knows better: the angle of its vertical, the height of standing ankles
-over its ground, and how far they slide.
+"""Error of a track's world frame against a calibration: angle of its vertical, height of standing ankles over its ground,
+and their sliding distance.
 
 usage: world_frame.py TRACK.npz CAMERAS.json VIEW UP [KEYPOINTS3D.pkl]
        world_frame.py TRACK.npz VERTICES.npy

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Two runs of one benchmark, of two commits: how many times as much time, memory and error the second one takes.
+/// Compares two runs of one benchmark at two commits by the ratios of time, memory and error.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace bodyloom {
 
-/// One number of one row.
+/// Comparison of one number of one row.
 struct ComparedValue {
   std::string group, labels, column;
   double before = 0, after = 0;
-  double ratio = 1;           ///< after / before
-  double spread_percent = 0;  ///< of the ratio: root sum of squares of both runs' own spreads; NaN: not measured
-  [[nodiscard]] bool Stands() const;  ///< known spread, and the ratio lies outside twice of it
+  double ratio = 1;                   ///< after / before
+  double spread_percent = 0;          ///< of the ratio: root sum of squares of both runs' spreads; NaN: not measured
+  [[nodiscard]] bool Stands() const;  ///< the spread is known and the change exceeds twice its size
 };
 
 /// Geometric mean of a column's ratios over the rows of a group.
@@ -33,11 +33,11 @@ struct Comparison {
   std::vector<std::string> warnings;    ///< another machine, another command
 };
 
-/// Rows are partners when group and labels are equal. Values are compared when both are positive; columns that end in
-/// "_spread_percent" give the spread of "<name>" and are not compared themselves.
+/// Matches rows by group and labels. Values are compared if both are positive; columns that end in "_spread_percent"
+/// give the spread of "<name>" and are not compared themselves.
 Comparison CompareReports(const SavedReport& before, const SavedReport& after);
 
-/// A table a group and the geometric means; `*` marks ratios that stand.
+/// One table per group and the geometric means; `*` marks ratios with Stands().
 std::string ComparisonText(const SavedReport& before, const SavedReport& after, const Comparison& comparison);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What became of benchmarks' JSON (`./dev bench --render …`, `./dev bench --compare …`).
+/// Compares and renders benchmarks' JSON (`./dev bench --render …`, `./dev bench --compare …`).
 ///
 ///   bodyloom_report --before A.json --after B.json          ratios of two commits, with their spread
 ///   bodyloom_report --render F.json[,G.json] [--page docs/lab/run_time_against_error.md]

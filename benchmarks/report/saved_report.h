@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A benchmark's JSON (accuracy/bench_report.h), read back.
+/// Reads a benchmark's JSON (accuracy/bench_report.h).
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ struct SavedReport {
   std::map<std::string, std::string> environment;  ///< commit, processor, cores, compiler
 };
 
-/// Throws std::runtime_error naming the file, and what is not there, when it is no benchmark's JSON.
+/// Reads the file. Throws std::runtime_error naming the file and the missing part when it is not a benchmark's JSON.
 SavedReport ReadSavedReport(const std::string& path);
 
 }  // namespace bodyloom

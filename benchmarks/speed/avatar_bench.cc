@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Time beside error of a person of Gaussians: posing, projection, picture, and the way back.
+/// Time and error of a Gaussian avatar: posing, projection, image, and backward pass.
 ///
 ///   bodyloom_bench_avatar [--gaussians 16000,32000] [--repetitions 60] [--json F]
 ///
-/// Gaussians on the texels of the built-in body's skin (an atlas about as large as asked for), posed with bent limbs,
-/// in a picture of 512² (person about 460 px high) and of 1920×1080 (900 px). Milliseconds, medians over the
-/// repetitions, one row a stage and one for a whole frame and a whole step of training (forward and backward, without a
-/// loss): wall time with one thread, the thread's own processor time, wall time with two, and the least of each wall
-/// time. On a busy machine the processor time travels best. error: a frame's largest difference of a plane to the
-/// picture in double (tests/support/splat_twin.h) over a hundred pixels where rounding decides nothing; a step's is the
-/// share of bytes of derivatives that differ between one thread and two, which is none.
+/// Gaussians on the texels of the built-in body's skin (an atlas of about the requested size), posed with bent limbs,
+/// in an image of 512² (person about 460 px high) and of 1920×1080 (900 px). Milliseconds, medians over the
+/// repetitions, one row per stage, one for a whole frame and one for a whole training step (forward and backward,
+/// without a loss): wall time with one thread, processor time of that thread, wall time with two, and the minimum of
+/// each wall time. Processor time is the most comparable on a busy machine. error: for a frame, the maximum difference
+/// of a plane from the image in double (tests/support/splat_twin.h) over a hundred pixels not sensitive to rounding;
+/// for a step, the share of bytes of derivatives that differ between one thread and two, which is 0.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -50,7 +50,7 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// One person in one picture, with everything that is kept between frames.
+/// One person in one image, with all data kept between frames.
 struct Scene {
   const BodyModel& model = BuiltinBody();
   AvatarFrames frames{model, Eigen::VectorXd()};
@@ -62,7 +62,7 @@ struct Scene {
   AvatarFrame frame;
   CameraGaussians posed;
   ScreenGaussians screen;
-  SplatPicture picture;
+  SplatImage image;
   FloatColumns by_planes, by_screen, by_posed;
   SplatGradient splat_gradient;
   PoseGradient pose_gradient;
@@ -102,8 +102,8 @@ struct Scene {
   void MakeFrame(int threads) { frames.Make(pose, {}, threads, &frame); }
   void Pose(int threads) { PoseGaussians(body, model.data().faces, frame, {.num_threads = threads}, &posed); }
   void Project(int threads) { ProjectGaussians(posed, camera, {.num_threads = threads}, &screen); }
-  void Draw(int threads) { picture.Draw(screen, window, {.num_threads = threads}); }
-  void SplatBack(int threads) { splat_gradient.Compute(picture, screen, by_planes, threads, &by_screen); }
+  void Draw(int threads) { image.Draw(screen, window, {.num_threads = threads}); }
+  void SplatBack(int threads) { splat_gradient.Compute(image, screen, by_planes, threads, &by_screen); }
   void ProjectBack(int threads) {
     ProjectGaussiansBackward(posed, screen, by_screen, camera, {.num_threads = threads}, &by_posed);
   }
@@ -112,7 +112,7 @@ struct Scene {
   }
   /// A loss's derivatives: any will do.
   void MakeLoss() {
-    by_planes.Resize(SplatPicture::kNumPlanes, picture.planes().rows());
+    by_planes.Resize(SplatImage::kNumPlanes, image.planes().rows());
     std::mt19937 generator(1);
     for (int p = 0; p < by_planes.columns(); ++p) {
       for (float& g : by_planes.values(p)) g = static_cast<float>(generator() / 2147483648.0 - 1);
@@ -140,15 +140,15 @@ Stages Step(Scene* scene, int threads, std::vector<double>* processor) {
   stage([&] { scene->SplatBack(threads); });
   stage([&] { scene->ProjectBack(threads); });
   stage([&] { scene->PoseBack(threads); });
-  // The picture's stage in two: its sort, and the rest.
-  const double sort = scene->picture.summary().sort_seconds;
+  // The image stage in two parts: its sort, and the rest.
+  const double sort = scene->image.summary().sort_seconds;
   wall.insert(wall.begin() + 3, sort);
   wall[4] -= sort;
   processor->insert(processor->begin() + 3, 0.0);  // in the next one's
   return wall;
 }
 
-double PictureError(const Scene& scene) {
+double ImageError(const Scene& scene) {
   std::vector<TwinSplat<double>> splats;
   for (int i = 0; i < scene.screen.size(); ++i) {
     if (!scene.screen.IsDrawn(i)) continue;
@@ -159,9 +159,9 @@ double PictureError(const Scene& scene) {
   const int num_pixels = static_cast<int>(scene.window.area());
   for (int i = 0; i < num_pixels; i += std::max(37, num_pixels / 100)) {
     const int x = scene.window.x_begin + i % scene.window.width(), y = scene.window.y_begin + i / scene.window.width();
-    const auto twin = TwinDraw(splats, {x, y, x + 1, y + 1}, scene.picture.options().stop_transmittance, 1e-4);
+    const auto twin = TwinDraw(splats, {x, y, x + 1, y + 1}, scene.image.options().stop_transmittance, 1e-4);
     if (twin.marginal[0]) continue;
-    for (int p = 0; p < 4; ++p) worst = std::max(worst, std::abs(twin.planes[p][0] - scene.picture.planes()(i, p)));
+    for (int p = 0; p < 4; ++p) worst = std::max(worst, std::abs(twin.planes[p][0] - scene.image.planes()(i, p)));
   }
   return worst;
 }
@@ -198,11 +198,11 @@ void Measure(int gaussians, int width, int height, double person_px, int repetit
       differing += std::memcmp(before.column(c), after.column(c), sizeof(float) * after.rows()) != 0;
     }
   }
-  const double error = PictureError(scene);
+  const double error = ImageError(scene);
   char group[120];
   std::snprintf(group, sizeof(group), "%d Gaussians, %dx%d, window %dx%d, %d drawn, %.2f tiles each", scene.body.size(),
-                width, height, scene.window.width(), scene.window.height(), scene.picture.summary().drawn,
-                double(scene.picture.summary().meetings) / scene.picture.summary().drawn);
+                width, height, scene.window.width(), scene.window.height(), scene.image.summary().drawn,
+                double(scene.image.summary().meetings) / scene.image.summary().drawn);
   for (size_t s = 0; s < num_stages + 2; ++s) {
     const std::string what = s < num_stages ? "  " + kStages[s] : s == num_stages ? "frame" : "step";
     report->rows.push_back(

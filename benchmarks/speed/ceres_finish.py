@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the last solve by Ceres costs and moves: the same clip by chain alone, by chain and then Ceres, and by Ceres alone,
-one after the other in each round.
+"""Cost and effect of a final solve by Ceres: the same clip by chain alone, by chain and then Ceres, and by Ceres alone,
+in turn in each round.
 
 usage: ceres_finish.py COMMAND [--rounds N] [--engines E...] [--threads N] -- TRACK_OPTIONS...
   COMMAND        the program `bodyloom` of a build

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Training windows a second, with one and two threads, and where the time goes.
+/// Training windows per second with one and two threads, and time by stage.
 ///
 ///   bodyloom_bench_lifter_windows [--motion FOLDER] [--windows 4000] [--json F] [--picture F.png] [--first 0]
 ///                                 [--floor_poses F.png] [--floor_share 0..1]
 ///
-/// Motion: the demo motion, or what the motion library finds in FOLDER for training. --picture draws six windows from
-/// seed --first: detections above, the landmarks they stand for from the front and from the side below, upright by the
-/// target's own idea of up. --floor_poses draws three people for each way of being on the floor.
+/// Motion: the demo motion, or the training motion of the library in FOLDER. --picture draws six windows from seed
+/// --first: detections above, their landmarks from the front and from the side below, upright by the target's vertical.
+/// --floor_poses draws three people for each way of being on the floor.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -52,7 +52,7 @@ Library Motions(const std::string& folder) {
   return library;
 }
 
-/// 21 points as positions (x right, y down, units of the body) in a box of the picture.
+/// Draws 21 points, given as positions (x right, y down, units of the body), in a box of the image.
 void DrawPerson(const std::vector<Vector2d>& points, const std::vector<float>& confidence, const Vector2d& corner_px,
                 double size_px, Image* image) {
   DrawnKeypoints drawn;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The live tracker beside the solve of the whole clip: error on the same data, frames a second, latency, memory.
+/// The live tracker against the solve of the whole clip: error on the same data, frame rate, latency, memory.
 ///
 ///   bodyloom_bench_live [--sections real,synthetic,lags,long,skip,uncertainty] [--uncertainty no] [--threads 2]
 ///                       [--frames 0] [--views c01,c05] [--lags 0,2,4,8,16] [--long 20000] [--repeat 1] [--json F]
@@ -260,7 +260,7 @@ class Bench {
     }
   }
 
-  /// What joint_sigma costs: with it, without it and with it again, as the machine may change.
+  /// Cost of joint_sigma: with it, without it and with it again, to detect drift of the machine.
   void Uncertainty() {
     const std::string motion = arguments_.List("motions")[0];
     for (const bool dense : {false, true}) {

@@ -95,7 +95,7 @@ void BenchSeams(const BodyModel& body) {
 
 namespace {
 
-/// What the texels seen hold with and without the others.
+/// Compares the visible texels of maps limited to them with those of the whole maps.
 void CompareSeenTexels(const BodyModel& body, const std::string& path) {
   const Track track = TrackOf(body, 40, 30, 0.8, 0.002);
   DescribeTrackOptions options;

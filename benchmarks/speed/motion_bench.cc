@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame and a training step of the motion-dependent renderer cost, beside what this machine's convolutions can
-// do. `bodyloom_bench_motion --profile cpu --threads 1`; the same networks in PyTorch:
+// Time of a frame and of a training step of the motion-dependent renderer, and the convolution throughput of the
+// machine. `bodyloom_bench_motion --profile cpu --threads 1`; the same networks in PyTorch:
 // benchmarks/peers/motion_torch.py.
 #include <torch/torch.h>
 
@@ -75,7 +75,7 @@ double Peak() {
   torch::nn::Conv2d conv(torch::nn::Conv2dOptions(64, 64, 3).padding(1));
   const torch::Tensor x = torch::randn({1, 64, 256, 256});
   const Milliseconds ms = Time(15, [&] { conv(x); });
-  const double peak = 1e-9 * 64 * 64 * 9 * 256 * 256 / (1e-3 * ms.least);
+  const double peak = 1e-9 * 64 * 64 * 9 * 256 * 256 / (1e-3 * ms.minimum);
   Print("3x3 convolution 64 -> 64 at 256x256", ms, std::to_string(peak) + " GMAC/s");
   return peak;
 }
@@ -109,7 +109,7 @@ void Inference(const MotionConfig& config, double peak) {
     ToyWindow window;
     bool around_body;
   };
-  for (const Row& row : {Row{"a frame, the whole picture", Filled(side, side), false},
+  for (const Row& row : {Row{"a frame, the whole image", Filled(side, side), false},
                          Row{"the person's window", Filled(side * 5 / 8, side), false},
                          Row{"a smaller person, the whole window", {side, side, side * 3 / 8, side * 5 / 8}, false},
                          Row{"a smaller person, around the body", {side, side, side * 3 / 8, side * 5 / 8}, true}}) {
@@ -118,7 +118,7 @@ void Inference(const MotionConfig& config, double peak) {
     for (int t = 0; t < 2; ++t) ToyFrame(config, row.window, t, false, &frames[t]);
     PixelBox seen = {0, 0, row.window.width, row.window.height};
     if (row.around_body) seen = PersonBoxes(std::span(frames).first(1), reach, config.Multiple()).front();
-    RollOut roll(model, 0, {reach, /*anywhere=*/true});
+    RollOut roll(model, 0, {reach, /*whole_window=*/true});
     int t = 0;
     const auto next = [&] { roll.Next(frames[t++ % 2]); };
     const auto multiply_adds = static_cast<double>(CountMultiplyAdds(next));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A motion that is known in closed form, for benchmarks of what comes after tracking.
+/// A motion in closed form for benchmarks of the steps after tracking, and utilities shared by their sections.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,16 +17,18 @@
 
 namespace bodyloom {
 
-/// Every joint swings at its own phase, the body walks and turns: smooth, at most `hz`.
+/// Pose in which every joint swings with its own phase and the body walks and turns; smooth, with frequencies up to
+/// `hz`.
 BodyPose PoseAt(const BodyModel& body, double time, double hz);
 
-/// T frames of it before a camera of 640×640, with noise on every joint's rotation (`noise`, radians) and on the place.
+/// A track of T frames of this motion before a camera of 640×640, with noise on every joint's rotation (`noise`,
+/// radians) and on the position.
 Track TrackOf(const BodyModel& body, int T, double fps, double hz, double noise);
 
-// Rows of a benchmark as lines of a Markdown table: median and least time beside the error.
+// Output of a benchmark as rows of a Markdown table: median and minimum time, and the error.
 
 struct Milliseconds {
-  double median = 0, least = 0;
+  double median = 0, minimum = 0;
 };
 
 inline Milliseconds Time(int repetitions, const std::function<void()>& work) {
@@ -42,7 +44,7 @@ inline Milliseconds Time(int repetitions, const std::function<void()>& work) {
 }
 
 inline void Print(const std::string& what, Milliseconds ms, const std::string& error) {
-  std::printf("| %-58s | %8.3f | %8.3f | %s |\n", what.c_str(), ms.median, ms.least, error.c_str());
+  std::printf("| %-58s | %8.3f | %8.3f | %s |\n", what.c_str(), ms.median, ms.minimum, error.c_str());
   std::fflush(stdout);
 }
 
@@ -56,20 +58,20 @@ inline std::string Format(const char* format, double a, double b = 0) {
   return text;
 }
 
-/// Between two directions, well conditioned for small angles.
+/// Angle between two directions, well conditioned for small angles.
 inline double AngleBetweenDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI;
 }
 
-// The sections of bodyloom_bench_descriptors. Each prints its own table; `folder` takes files.
+// Sections of bodyloom_bench_descriptors. Each prints its own table; `folder` is for files.
 
 void BenchNormals(const BodyModel& body);
 void BenchVelocities(const BodyModel& body);
-/// Jitter of a track and, with a truth at a finer rate that has frames at the track's times (`truth` empty: none), the
-/// error of every velocity scheme against it, in camera and body axes.
+/// Jitter of a track, and the error of every velocity scheme in camera and body axes against a truth at a finer rate
+/// that has frames at the track's times (`truth` empty: none).
 void BenchTracked(const BodyModel& body, const std::string& track, const std::string& truth);
 void BenchBake(const BodyModel& body);
-/// Error of bilinear lookups in a baked map of normals, next to seams and away from them.
+/// Error of bilinear samples of a baked map of normals, next to seams and away from them.
 void BenchSeams(const BodyModel& body);
 void BenchStream(const BodyModel& body, const std::string& folder);
 void BenchTexture(const BodyModel& body, const std::string& folder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Vertex normals by other libraries, for comparison: each builds its mesh once and is timed on the normals alone.
+/// Vertex normals by other libraries for comparison; each builds its mesh once, and only the normals are timed.
 #pragma once
 
 #include <memory>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame of the two one-photo renderers costs once the photo is encoded: in the whole window, and in the
-// person's. `bodyloom_bench_photo --profile cpu --threads 1`; the same networks in PyTorch:
-// benchmarks/peers/photo_torch.py. Processor time beside the clock's, so that figures of a busy machine can be
-// compared.
+// Time of a frame of the two one-photo renderers after encoding the photo, in the whole window and in the person's
+// part. `bodyloom_bench_photo --profile cpu --threads 1`; the same networks in PyTorch:
+// benchmarks/peers/photo_torch.py. Processor time is given beside wall time, as it is comparable on a busy machine.
 #include <torch/torch.h>
 
 #include <algorithm>
@@ -117,7 +116,7 @@ void GuidedRenderer(const GuidedConfig& config) {
       EmptyMaps(config.profile.texture_size,
                 std::vector<uint8_t>(size_t(config.profile.texture_size) * config.profile.texture_size, 2));
   std::fill(maps.from.begin(), maps.from.end(), uint8_t{1});
-  if (config.profile.contour_hints) maps.extent.assign(maps.from.size(), 0.1F);
+  if (config.profile.contour_hints) maps.clothes_offset.assign(maps.from.size(), 0.1F);
   Print("guided: pseudo inputs of a frame", [&] { LookUp(maps, frame); });
   Print("guided: the photo encoded, once", [&] { model->EncodeSource(photo); });
 }

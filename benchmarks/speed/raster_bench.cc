@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Time beside error of the rasteriser, its resolve pass and the overlay, on the built-in body.
+/// Time and error of the rasteriser, its resolve pass and the overlay, on the built-in body.
 ///
 ///   bodyloom_bench_raster [--sizes 128,256,512,1024] [--repetitions 100] [--json F]
 ///
 /// The body in T-pose, from the front, fills a square image. px_wrong: pixels whose face or depth is not that of the
 /// twin (tests/support/raster_twin.h), to the bit; for Embree, pixels whose face differs away from edges
 /// (tests/support/embree_twin.h). uv_error: largest difference of a chart coordinate to the double-precision path.
-/// Times are of one picture, milliseconds: median with one thread, least with one, median and least with two.
+/// Times per image, milliseconds: median and minimum with one thread, median and minimum with two.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -36,7 +36,7 @@ namespace {
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct Times {
-  double processor_ms, median_ms, least_ms;
+  double processor_ms, median_ms, min_ms;
 };
 
 /// Of this thread alone.
@@ -78,12 +78,12 @@ struct Scene {
 BenchRow Row(const std::string& group, const std::string& what, int repetitions, const std::function<void(int)>& work,
              const std::vector<double>& errors) {
   const Times one = Measure(repetitions, [&] { work(1); }), two = Measure(repetitions, [&] { work(2); });
-  BenchRow row{group, {what}, {one.processor_ms, one.median_ms, one.least_ms, two.median_ms, two.least_ms}};
+  BenchRow row{group, {what}, {one.processor_ms, one.median_ms, one.min_ms, two.median_ms, two.min_ms}};
   row.values.insert(row.values.end(), errors.begin(), errors.end());
   return row;
 }
 
-double WrongPixels(const VisibilityBuffer& buffer, const TwinPicture& twin, int* covered) {
+double WrongPixels(const VisibilityBuffer& buffer, const TwinImage& twin, int* covered) {
   int wrong = 0;
   *covered = 0;
   for (int y = 0; y < twin.height; ++y) {
@@ -128,7 +128,7 @@ BenchRow EmbreeRow(const std::string& group, const Scene& scene, const Visibilit
   }
   return {group,
           {"Embree: rebuild, packets of 8 rays"},
-          {one.processor_ms, one.median_ms, one.least_ms, kNone, kNone, double(covered), double(wrong), kNone}};
+          {one.processor_ms, one.median_ms, one.min_ms, kNone, kNone, double(covered), double(wrong), kNone}};
 }
 #endif
 
@@ -144,7 +144,7 @@ void Square(int size, int repetitions, BenchReport* report) {
     request.num_threads = threads;
     ResolvePixels(buffer, body, scene.vertices, scene.camera, request, &pixels);
   };
-  const TwinPicture twin = RasterTwin(scene.vertices, faces, scene.camera, true);
+  const TwinImage twin = RasterTwin(scene.vertices, faces, scene.camera, true);
   int covered = 0;
   see(1);
   const double wrong = WrongPixels(buffer, twin, &covered);
@@ -170,7 +170,7 @@ void Square(int size, int repetitions, BenchReport* report) {
 #endif
 }
 
-/// What the person's box saves: a person 400 px wide and high in an image of 1920×1080.
+/// Time saved by the person's box: a person 400 px wide and high in an image of 1920×1080.
 void SmallPerson(int repetitions, BenchReport* report) {
   Scene scene(400);
   scene.camera.width = 1920, scene.camera.height = 1080;
@@ -228,14 +228,14 @@ void Overlay(int repetitions, BenchReport* report) {
     differing += !std::equal(&a.bgr[i], &a.bgr[i] + 3, &b.bgr[i]);
   }
   OverlayRenderer one_thread(BuiltinBody(), track), two_threads(BuiltinBody(), track, two);
-  Image picture;
+  Image image;
   for (const bool caption : {false, true}) {
     OverlayFrame frame{.background = &video};
     if (caption) frame.caption = {{"frame 12, tracked"}};
-    report->rows.push_back(
-        Row("Overlay, 1280 x 720", caption ? "posing, shading, caption" : "posing and shading", repetitions,
-            [&](int threads) { picture = (threads == 1 ? one_thread : two_threads).Render(0, frame); },
-            {kNone, differing, kNone}));
+    report->rows.push_back(Row("Overlay, 1280 x 720", caption ? "posing, shading, caption" : "posing and shading",
+                               repetitions,
+                               [&](int threads) { image = (threads == 1 ? one_thread : two_threads).Render(0, frame); },
+                               {kNone, differing, kNone}));
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// bodyloom_bench_ssim: time of SSIM and PSNR of two RGB pictures on one thread, beside the value and how far it is
-/// from that of the same pictures as planes of doubles. Values of independent programs:
+/// bodyloom_bench_ssim: time of SSIM and PSNR of two RGB images on one thread, their values, and the difference from
+/// those of the same images as planes of doubles. Values of independent programs:
 /// tests/data_tools/evaluation/ssim_test.cc.
 #include <algorithm>
 #include <cmath>

@@ -52,7 +52,7 @@ void BenchNormals(const BodyModel& body) {
     for (const int threads : {1, 2}) {
       Milliseconds batch = Time(20, [&] { normals_of.ComputeFrames(many, out, threads); });
       Print(std::string(area ? "area" : "angle") + "-weighted, a frame of 64, " + std::to_string(threads) + " threads",
-            {batch.median / 64, batch.least / 64}, "same bytes");
+            {batch.median / 64, batch.minimum / 64}, "same bytes");
     }
   }
   MatrixX3d peer_normals(vertices.rows(), 3);
@@ -139,7 +139,7 @@ void BenchVelocities(const BodyModel& body) {
       add(t);
     }
     const double n = static_cast<double>(batch.size());
-    Print("analytic, a frame of 25", {ms.median / n, ms.least / n}, rmse());
+    Print("analytic, a frame of 25", {ms.median / n, ms.minimum / n}, rmse());
   }
 }
 

@@ -71,10 +71,10 @@ void BenchTexture(const BodyModel& body, const std::string& folder) {
     VisibilityBuffer buffer;
     buffer.Render(vertices, body.data().faces, track.camera);
     const VisiblePoints points = ResolveVisiblePoints(buffer, body, vertices, track.camera);
-    const Image picture = ImageOf(ProjectUvMaps(body, charts, fine, paint, 3, points, 640, 640), 640, 640);
-    if (t == 3) WriteImage((std::filesystem::path(folder) / "texture_bench_frame.png").string(), picture);
+    const Image image = ImageOf(ProjectUvMaps(body, charts, fine, paint, 3, points, 640, 640), 640, 640);
+    if (t == 3) WriteImage((std::filesystem::path(folder) / "texture_bench_frame.png").string(), image);
     const Stopwatch watch;
-    extractor.Add(picture, vertices, track.camera, t);
+    extractor.Add(image, vertices, track.camera, t);
     seconds += watch.seconds();
   }
   Texture texture = extractor.Merge();

@@ -63,8 +63,8 @@ std::vector<std::vector<float>> VertexVelocities(const BodyModel& body, const Tr
   return velocities;
 }
 
-/// What a cubic through seven frames leaves of the one in the middle: independent noise of standard deviation σ leaves
-/// σ √(2/3), by which the results are divided. Motion that is no cubic adds to it, so they are upper bounds.
+/// Deviation of the middle frame from a cubic fitted to seven frames, divided by √(2/3), which independent noise of
+/// standard deviation σ leaves as σ √(2/3). Motion that is not cubic adds to it, so the results are upper bounds.
 struct Jitter {
   double joint_deg = 0, pelvis_mm = 0;  ///< rms over joints and frames, a component
 };
@@ -125,7 +125,7 @@ void BenchTracked(const BodyModel& body, const std::string& track_path, const st
   std::printf(
       "\n| axes | velocities | rms error, m/s | rms of the truth, m/s | rms error of the truth's own frames, m/s |\n"
       "|---|---|---|---|---|\n");
-  // What the scheme does to frames without error, at the track's rate.
+  // Error of the scheme on error-free frames at the track's rate.
   Track at_rate = truth;
   at_rate.motion.timestamps.clear();
   at_rate.frame_status.clear();

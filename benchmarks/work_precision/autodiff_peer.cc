@@ -256,7 +256,7 @@ void Check(const SequenceProblem& problem) {
   for (const FrameData& frame : problem.frames) {
     plain = plain && frame.Get<DenseTerm>().points != nullptr && frame.Get<DenseTerm>().whitening.empty() &&
             frame.Get<LandmarkTerm>().seen.empty() && frame.Get<RenderedUvTerm>().term == nullptr &&
-            frame.Get<PartLabelTerm>().term == nullptr && frame.Get<LiftedPoseTerm>().pose == nullptr &&
+            frame.Get<PartLabelTerm>().matches == nullptr && frame.Get<LiftedPoseTerm>().pose == nullptr &&
             frame.Get<JointLimitTerm>().limits == nullptr && frame.Get<UprightTerm>().weight == 0 &&
             frame.Get<InitialiserTerm>().weight == 0;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A WorkProblem's cost as a user of Ceres would state it: one small cost function a keypoint, an acceleration and a
-/// frame's prior, every derivative by Ceres' automatic differentiation, rotations as plain axis-angle blocks.
+/// Solves a WorkProblem as a user of Ceres would formulate it: one small cost function per keypoint, acceleration and
+/// prior of a frame, all derivatives by automatic differentiation, rotations as plain axis-angle blocks.
 #pragma once
 
 #include "tracking/problem/sequence_problem.h"
@@ -8,10 +8,10 @@
 
 namespace bodyloom {
 
-/// Minimises the same cost as SolveSequence, with the same tolerances. Best settings found: a keypoint's cost function
-/// holds only the joints that move it, Jets carry 16 derivatives at a time, Ceres evaluates with `num_threads`, sparse
-/// normal equations with SuiteSparse. Takes problems of dense keypoints in pixels, a known pinhole camera and all
-/// joints unknown, without cuts; std::invalid_argument for others.
+/// Minimises the same cost as SolveSequence, with the same tolerances and the best settings found: a keypoint's cost
+/// function depends only on the joints that move it, Jets carry 16 derivatives at a time, Ceres evaluates with
+/// `num_threads`, sparse normal equations with SuiteSparse. Supports dense keypoints in pixels, a known pinhole camera
+/// and all joints unknown, without cuts; throws std::invalid_argument for other problems.
 SolveReport SolveWithAutoDiff(SequenceProblem* problem, const SolveOptions& options);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a user would pick instead, on the same problems: Ceres with automatic derivatives, and PyTorch.
+/// Alternatives of a user on the same problems: Ceres with automatic derivatives, and PyTorch.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -41,7 +41,7 @@ double CostOf(const SequenceProblem& answer) {
   return SolveSequence(&judged, judge).initial_cost;
 }
 
-/// Time until the error is no larger than chain's, ms a frame (infinity: never), and the error then (else the least).
+/// Time until the error is at most chain's, ms per frame (infinity: never), and the error then (else the minimum).
 struct Reached {
   double wall_ms = std::numeric_limits<double>::infinity(), cpu_ms = wall_ms, error_px = wall_ms;
   int iterations = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The sections of bodyloom_bench_work_precision; each adds rows, notes and plots to the report.
+/// Sections of bodyloom_bench_work_precision; each adds rows, notes and plots to the report.
 #pragma once
 
 #include "benchmarks/work_precision/measure.h"
@@ -9,13 +9,13 @@ namespace bodyloom {
 void SetSection(WorkBench* bench);         ///< 48 problems: performance profile, equality of costs
 void ToleranceSection(WorkBench* bench);   ///< 100 frames, function tolerance 1e-1 … 1e-7
 void CountSection(WorkBench* bench);       ///< 20 … 5,000 keypoints a frame
-void EvaluationSection(WorkBench* bench);  ///< of one frame: its cost, and with derivatives
+void EvaluationSection(WorkBench* bench);  ///< one frame: cost alone, and cost with derivatives
 void LengthSection(WorkBench* bench);      ///< --lengths, with peak memory
 void ThreadSection(WorkBench* bench);
 void PeerSection(WorkBench* bench);      ///< Ceres AutoDiff and PyTorch (Adam, L-BFGS), --peer_frames
-void TrackSection(WorkBench* bench);     ///< `track` as a whole: detections to a track
-void DescribeSection(WorkBench* bench);  ///< `describe`: a track to maps of normals and velocities
-void EvaluateSection(WorkBench* bench);  ///< `evaluate`: a track against its truth
-void WholeSection(WorkBench* bench);     ///< the three after one another
+void TrackSection(WorkBench* bench);     ///< whole `track`: detections to a track
+void DescribeSection(WorkBench* bench);  ///< whole `describe`: a track to maps of normals and velocities
+void EvaluateSection(WorkBench* bench);  ///< whole `evaluate`: a track against its truth
+void WholeSection(WorkBench* bench);     ///< these three in sequence
 
 }  // namespace bodyloom

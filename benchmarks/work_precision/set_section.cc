@@ -37,13 +37,13 @@ EngineRun Finish(const EngineRun& run, Engine engine) {
   return finished;
 }
 
-/// How much the other engine lowers this cost, as a share of it: next to nothing at a minimum.
+/// Relative decrease of this cost by the other engine; nearly 0 at a minimum.
 double Gain(const EngineRun& run, const Engine& other) {
   const EngineRun finished = Finish(run, other);
   return (run.cost - finished.cost) / run.cost;
 }
 
-/// Why costs that are not equal are not: a valley that was not followed to its end, or two minima.
+/// Explains unequal costs: a valley that was not followed to its end, or two minima.
 std::string Explain(const std::string& name, const Engine& ceres, const Engine& chain, const EngineRun& a,
                     const EngineRun& b) {
   const auto gap = [](const EngineRun& x, const EngineRun& y) { return (y.cost - x.cost) / std::min(x.cost, y.cost); };

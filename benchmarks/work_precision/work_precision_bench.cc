@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Error against time: the engines of the sequence solve and their peers on the same problems, and every stage.
+/// Work-precision benchmark: error against time of the solvers of a sequence and of alternatives on the same problems,
+/// and of every stage.
 ///
 ///   bodyloom_bench_work_precision [--sections
 ///   set,tolerance,counts,lengths,threads,peers,track,describe,evaluate,whole]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The problems on which engines are compared: a real motion seen by a known camera as dense keypoints of known noise,
-/// with a start that is off by a known amount. Cost: keypoints (Geman–McClure), accelerations, pose prior, shape prior.
+/// Problems on which solvers are compared: a real motion seen by a known camera as dense keypoints of known noise, with
+/// an initial error of known size. Cost: keypoints (Geman–McClure), accelerations, pose prior, shape prior.
 #pragma once
 
 #include <memory>
@@ -16,18 +16,18 @@ namespace bodyloom {
 struct WorkProblemOptions {
   std::string motion;           ///< file; empty: DemoMotion at 30 frames a second
   std::string noise = "pixel";  ///< DenseFaults()
-  int frames = 100;             ///< the motion runs forwards and backwards as often as it takes
+  int frames = 100;             ///< the motion is played forwards and backwards repeatedly
   int first_frame = 0;
-  int dense = 300;  ///< keypoints a frame
+  int dense = 300;  ///< keypoints per frame
   double start_error_px = 14.8;
   uint64_t seed = 1;
 };
 
-/// Points into itself: not to be copied.
+/// Not copyable, as it holds pointers into itself.
 struct WorkProblem {
   SynthClip clip;
   std::shared_ptr<const MixturePrior> prior;
-  SequenceProblem problem;  ///< at its start
+  SequenceProblem problem;  ///< at its initial values
   WorkProblem() = default;
   WorkProblem(const WorkProblem&) = delete;
   WorkProblem& operator=(const WorkProblem&) = delete;
@@ -35,16 +35,16 @@ struct WorkProblem {
 
 std::unique_ptr<WorkProblem> MakeWorkProblem(const WorkProblemOptions& options);
 
-/// Mean distance between where every tenth vertex of the fitted and of the true body appears, pixels of the image
-/// scaled to 512 by its longer side.
+/// Mean projected distance between every tenth vertex of the fitted and of the true body, pixels of the image scaled to
+/// 512 by its longer side.
 double ProjectionErrorPx(const WorkProblem& work, const std::vector<FrameState>& states, const Eigen::VectorXd& betas);
 
-// A WorkProblem as numbers, for fitters written in Python (benchmarks/peers/pytorch_fit.py), and what they answer.
+// Exchange of a WorkProblem and its solutions with fitters written in Python (benchmarks/peers/pytorch_fit.py).
 
-/// Every array that the cost needs (names and shapes: class Problem of the script). Throws std::runtime_error.
+/// Writes every array that the cost needs (names and shapes: class Problem of the script). Throws std::runtime_error.
 void WriteProblemFile(const WorkProblem& work, const std::string& path);
 
-/// Where a fitter stood at one moment.
+/// State of a fitter at one time.
 struct PeerMoment {
   double seconds = 0, cpu_seconds = 0;  ///< wall, and processor time of the process
   int iterations = 0;

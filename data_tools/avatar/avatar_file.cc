@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* kAvatarFormat = "bodyloom avatar";
 constexpr int kAvatarVersion = 2, kVersionWithoutKinds = 1;
-constexpr int64_t kMostGaussians = 10000000, kMostShape = 1000, kMostPoses = 10000000, kMostNodes = 100000;
-constexpr double kMostLoss = 1e9, kMostSteps = 1e15;
+constexpr int64_t kMaxGaussians = 10000000, kMaxShape = 1000, kMaxPoses = 10000000, kMaxNodes = 100000;
+constexpr double kMaxLoss = 1e9, kMaxSteps = 1e15;
 constexpr int kColumns = GaussianBody::kNumParameters, kInfluences = GaussianBody::kInfluences;
 
 NdArray FromTable(const FloatColumns& table) {
@@ -32,7 +32,9 @@ class AvatarArrays {
   AvatarArrays(const NpzArrays& arrays, std::string where) : arrays_(arrays), where_(std::move(where)) {}
 
   [[nodiscard]] const std::string& where() const { return where_; }
-  [[noreturn]] void Fail(const std::string& key, const std::string& message) const { Refuse(where_, key, message); }
+  [[noreturn]] void Fail(const std::string& key, const std::string& message) const {
+    ThrowFileError(where_, key, message);
+  }
 
   const NdArray& Take(const std::string& key, DType type, const char* type_name,
                       const std::vector<int64_t>& shape) const {
@@ -96,20 +98,19 @@ class AvatarArrays {
     if (step != std::floor(step)) Fail(key, Concatenate(step, ", expected a whole number"));
     return static_cast<int64_t>(step);
   }
-  /// Rows of `parameters`, which must be there before memory is taken for them.
+  /// Rows of `parameters`, which must be present before memory is allocated for them.
   int64_t NumRows() const {
     const NdArray& array = RequireArray(arrays_, "parameters", where_);
-    if (array.shape.size() != 2 || array.shape[1] != kColumns || array.shape[0] < 1 ||
-        array.shape[0] > kMostGaussians) {
+    if (array.shape.size() != 2 || array.shape[1] != kColumns || array.shape[0] < 1 || array.shape[0] > kMaxGaussians) {
       Fail("parameters",
-           Concatenate("an array of ", array.ShapeText(), ", expected Nx", kColumns, ", N from 1 to ", kMostGaussians));
+           Concatenate("an array of ", array.ShapeText(), ", expected Nx", kColumns, ", N from 1 to ", kMaxGaussians));
     }
     return array.shape[0];
   }
   Eigen::VectorXd Betas() const {
     const NdArray& array = RequireArray(arrays_, "betas", where_);
-    if (array.dtype != DType::kF64 || array.shape.size() != 1 || array.shape[0] > kMostShape) {
-      Fail("betas", Concatenate("an array of ", array.ShapeText(), ", expected at most ", kMostShape, " float64"));
+    if (array.dtype != DType::kF64 || array.shape.size() != 1 || array.shape[0] > kMaxShape) {
+      Fail("betas", Concatenate("an array of ", array.ShapeText(), ", expected at most ", kMaxShape, " float64"));
     }
     const std::vector<double> values = array.ToDoubles();
     if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
@@ -194,7 +195,7 @@ PoseCorrections TakePoses(const AvatarArrays& arrays, const NpzArrays& npz, int 
   const auto first = std::find_if(npz.begin(), npz.end(), is_pose);
   if (first == npz.end()) return poses;
   const NdArray& any = first->second;
-  const int64_t frames = any.shape.empty() ? 0 : std::min(any.shape[0], kMostPoses);
+  const int64_t frames = any.shape.empty() ? 0 : std::min(any.shape[0], kMaxPoses);
   poses.values = arrays.Table("pose_values", 3 * num_joints + 3, frames);
   poses.mean = arrays.Table("pose_mean", 3 * num_joints + 3, frames);
   poses.square = arrays.Floats("pose_square", {frames});
@@ -205,24 +206,24 @@ PoseCorrections TakePoses(const AvatarArrays& arrays, const NpzArrays& npz, int 
   return poses;
 }
 
-void PutHeldOut(const HeldOutCurve& curve, NpzArrays* to) {
+void PutHeldOut(const EarlyStopping& curve, NpzArrays* to) {
   if (curve.losses.empty()) return;
-  const double landing[2] = {static_cast<double>(curve.landing_step), curve.landing_progress};
+  const double landing[2] = {static_cast<double>(curve.cooldown_step), curve.cooldown_progress};
   (*to)["held_out"] = NdArray::FromDoubles(curve.losses.data(), {static_cast<int64_t>(curve.losses.size())});
   (*to)["held_out_landing"] = NdArray::FromDoubles(landing, {2});
 }
 
-HeldOutCurve TakeHeldOut(const AvatarArrays& arrays, const NpzArrays& npz) {
-  HeldOutCurve curve;
+EarlyStopping TakeHeldOut(const AvatarArrays& arrays, const NpzArrays& npz) {
+  EarlyStopping curve;
   if (!npz.contains("held_out") && !npz.contains("held_out_landing")) return curve;
   const NdArray& losses = RequireArray(npz, "held_out", arrays.where());
-  curve.losses = arrays.Doubles("held_out", {losses.shape.empty() ? 0 : losses.shape[0]}, 0, kMostLoss);
-  const std::vector<double> landing = arrays.Doubles("held_out_landing", {2}, 0, kMostSteps);
+  curve.losses = arrays.Doubles("held_out", {losses.shape.empty() ? 0 : losses.shape[0]}, 0, kMaxLoss);
+  const std::vector<double> landing = arrays.Doubles("held_out_landing", {2}, 0, kMaxSteps);
   if (landing[0] != std::floor(landing[0]) || landing[1] > 1) {
     arrays.Fail("held_out_landing",
                 Concatenate(landing[0], ", ", landing[1], ", expected a whole step and a progress up to 1"));
   }
-  curve.landing_step = static_cast<int64_t>(landing[0]), curve.landing_progress = landing[1];
+  curve.cooldown_step = static_cast<int64_t>(landing[0]), curve.cooldown_progress = landing[1];
   return curve;
 }
 
@@ -236,7 +237,7 @@ void PutKept(const AvatarFile& avatar, const KeptAvatar& kept, NpzArrays* to) {
   (*to)["best_loss"] = NdArray::FromDouble(kept.loss);
 }
 
-/// What is kept must be of the same person and garment as what goes on.
+/// Throws unless the best avatar so far has the same person and garment as the one in training.
 void TakeKept(const NpzArrays& npz, const std::string& where, AvatarCheckpoint* to) {
   NpzArrays best;
   for (const auto& [key, array] : npz) {
@@ -260,7 +261,7 @@ std::optional<AvatarGarment> TakeGarment(const AvatarArrays& arrays, const NpzAr
   if (std::none_of(npz.begin(), npz.end(), is_garment)) return std::nullopt;
   AvatarGarment garment;
   const std::vector<double> cut = arrays.Take("garment_cut", DType::kF64, "float64", {5}).ToDoubles();
-  // As far as cloth of a person may go; what the body it is cut for says is asked when it is cut.
+  // Bounds of any garment; those of the body it is cut for are checked when it is cut.
   const auto within = [&](int k, const char* name, double low, double high) {
     if (!(cut[k] >= low && cut[k] <= high)) {
       arrays.Fail("garment_cut", Concatenate(name, " ", cut[k], ", expected ", low, " to ", high));
@@ -272,9 +273,9 @@ std::optional<AvatarGarment> TakeGarment(const AvatarArrays& arrays, const NpzAr
   garment.node_spacing_m = within(4, "nodes' spacing", 0.005, 1);
   garment.offsets_m = arrays.Floats("garment_offsets", {num_vertices});
   const NdArray& nodes = RequireArray(npz, "garment_nodes", arrays.where());
-  if (nodes.shape.size() != 2 || nodes.shape[0] < 1 || nodes.shape[0] > kMostNodes) {
+  if (nodes.shape.size() != 2 || nodes.shape[0] < 1 || nodes.shape[0] > kMaxNodes) {
     arrays.Fail("garment_nodes",
-                Concatenate("an array of ", nodes.ShapeText(), ", expected Kx3, K from 1 to ", kMostNodes));
+                Concatenate("an array of ", nodes.ShapeText(), ", expected Kx3, K from 1 to ", kMaxNodes));
   }
   const std::vector<float> places = arrays.Floats("garment_nodes", {nodes.shape[0], 3});
   garment.nodes = Eigen::Map<const MatrixX3f>(places.data(), nodes.shape[0], 3);

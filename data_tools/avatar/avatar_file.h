@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Files of a person of Gaussians: the person, and a training that can go on.
+/// Files of Gaussian avatars: the finished avatar, or a checkpoint from which training can resume.
 ///
-/// One .npz. N Gaussians (render/gaussian_avatar/gaussian_body.h says what the numbers mean) on a body of J joints, V
-/// vertices and F faces:
+/// One .npz. N Gaussians (values: render/gaussian_avatar/gaussian_body.h) on a body of J joints, V vertices and F
+/// faces:
 ///   format 'bodyloom avatar'   version 2              body_size int32 [J, V, F]    betas B, float64
 ///   parameters N×23 float32    joints N×6 int32       kinds N uint8 (GaussianKind) light 27 float32
 ///   anchor_face N int32        anchor_barycentric N×3 float32                      anchor_factor N float32
-/// with a garment of K nodes (render/gaussian_avatar/avatar_frame.h), which joints J to J + K − 1 name,
+/// with a garment of K nodes (render/gaussian_avatar/avatar_frame.h), numbered as joints J to J + K − 1,
 ///   garment_cut float64 [waist, length, fullness, spacing, nodes' spacing]   garment_offsets V float32   garment_nodes
 ///   K×3 float32
 /// and, in a training's checkpoint (render/gaussian_avatar/learning/avatar_trainer.h):
 ///   adam_first, adam_second N×23 float32   adam_steps N int32    pull N float32    step, seconds float64
-///   light_first, light_second 27 float32   light_steps 27 int32  options text: what the training was begun with
-/// where frames held out were judged (render/gaussian_avatar/learning/held_out_curve.h) also
-///   held_out K float64 (losses)            held_out_landing float64 [step, progress]; 0, 0: it does not land
-///   best_…: the person that is kept, keys as above with best_ before them      best_step, best_loss float64
-/// where it refines the poses of a clip of T frames (render/gaussian_avatar/learning/pose_refiner.h) also
+///   light_first, light_second 27 float32   light_steps 27 int32  options text: the options at the start of training
+/// if frames were held out for validation (render/gaussian_avatar/learning/early_stopping.h) also
+///   held_out K float64 (losses)            held_out_landing float64 [step, progress]; 0, 0: no cooldown yet
+///   best_…: the best avatar so far, keys as above after the prefix best_      best_step, best_loss float64
+/// if the poses of a clip of T frames are refined (render/gaussian_avatar/learning/pose_refiner.h) also
 ///   pose_values, pose_mean T×(3J + 3) float32     pose_square T float32     pose_steps T int32
 /// All numbers are finite. Files of version 1, which have is_loose (0, 1) in place of kinds and no garment, are read
-/// too, and so are files with a network of the motion (motion_network, motion_parameters, …), which earlier versions
-/// learned: it is left out.
+/// too, and so are files with a motion network (motion_network, motion_parameters, …) of earlier versions, which is
+/// ignored.
 #pragma once
 
 #include <optional>
@@ -39,18 +39,18 @@ struct AvatarFile {
   std::optional<AvatarGarment> garment;
   Eigen::VectorXd betas;
   int num_joints = 0, num_vertices = 0, num_faces = 0;  ///< of the parametric body
-  bool had_network = false;                             ///< of the motion, which was left out when the file was read
-  /// With the garment's nodes.
+  bool had_network = false;                             ///< a motion network was in the file and was ignored
+  /// Joints and the garment's nodes.
   [[nodiscard]] int num_bones() const { return num_joints + (garment ? garment->num_nodes() : 0); }
 };
 
 struct AvatarCheckpoint {
-  AvatarFile avatar;  ///< its body stays empty: the state's counts
+  AvatarFile avatar;  ///< its body stays empty: counts of the state
   AvatarTrainingState state;
   std::string options;
 };
 
-/// Whole or not at all. Throw std::runtime_error naming the path when it cannot be written, std::invalid_argument when
+/// Written atomically. Throw std::runtime_error naming the path when it cannot be written, std::invalid_argument when
 /// tables do not fit each other.
 void WriteAvatar(const std::string& path, const AvatarFile& avatar);
 void WriteAvatarCheckpoint(const std::string& path, const AvatarCheckpoint& checkpoint);

@@ -14,7 +14,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kMostStretch = 2;  // of a new edge's UV length a metre, in the model's
+constexpr double kMaxStretch = 2;  // of a new edge's UV length a metre, in the model's
 
 struct FaceCorner {
   int face = -1, corner = 0;
@@ -28,7 +28,7 @@ class FaceAppender {
     for (int f = 0; f < body_.faces.rows(); ++f) Register(f);
   }
 
-  /// Whether the face adjoins one that is there, beside which it is then appended.
+  /// Appends the face and returns true if it adjoins an existing one.
   bool Append(const Eigen::RowVector3i& face) {
     for (int k = 0; k < 3; ++k) {
       const auto model = face_at_.find(std::minmax(face[k], face[(k + 1) % 3]));
@@ -95,13 +95,13 @@ class FaceAppender {
       const double metres = (place(a) - place(b)).norm();
       if (metres > 0) stretch = std::max(stretch, (uv(a) - uv(b)).norm() / metres);
     }
-    double least = kMostStretch * stretch * (body_.v_template.row(vertex) - place(anchor)).norm();
+    double minimum = kMaxStretch * stretch * (body_.v_template.row(vertex) - place(anchor)).norm();
     FaceCorner nearest = anchor;
     for (const FaceCorner& corner : corners_at_.at(vertex)) {
       if (!body_.face_part.empty() && body_.face_part[corner.face] != body_.face_part[anchor.face]) continue;
       const double distance = (uv(corner) - uv(anchor)).norm();
-      if (distance > least) continue;
-      least = distance;
+      if (distance > minimum) continue;
+      minimum = distance;
       nearest = corner;
     }
     return nearest;

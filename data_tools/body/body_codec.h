@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The integer coding behind compact body files: numbers on a grid, predicted from what is already known, so that few
-/// and small residuals are left for deflate. Everything is exact on integers and the same on every machine.
+/// Integer coding of compact body files: numbers on a grid, predicted from those already known, so that deflate only
+/// has to code few, small residuals. All of it is exact integer arithmetic, the same on every machine.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ Integers UnpackIntegers(const NdArray& array, int64_t expected, const std::strin
 /// round(value / step). Throws std::invalid_argument naming `what` when the result leaves ±2^29.
 int32_t OnGrid(double value, double step, const char* what);
 
-/// Predicts a mesh vertex as the mean of its neighbours of lower index; without such, as the vertex before it. After
-/// Catmull–Clark subdivision that is nearly the subdivision rule itself.
+/// Predicts a mesh vertex as the mean of its neighbours of lower index, or as the vertex before it if there is none. On
+/// Catmull–Clark subdivided meshes this is close to the subdivision rule.
 class MeshPredictor {
  public:
   /// Triangle indices must lie in 0..num_vertices−1.
@@ -37,8 +37,8 @@ class MeshPredictor {
   [[nodiscard]] const int* begin(int v) const { return lower_.data() + begin_[v]; }
   [[nodiscard]] const int* end(int v) const { return lower_.data() + begin_[v + 1]; }
 
-  /// Turns `columns` values a vertex into residuals and back. Restore throws std::runtime_error "where: …" when a value
-  /// leaves the range of OnGrid.
+  /// Converts `columns` values per vertex to residuals and back. Restore throws std::runtime_error "where: …" when a
+  /// value leaves the range of OnGrid.
   [[nodiscard]] Integers Residuals(const Integers& values, int columns) const;
   [[nodiscard]] Integers Restore(Integers residuals, int columns, const std::string& where) const;
 
@@ -76,7 +76,7 @@ UnitRows UnpackUnitRows(const PackedUnitRows& packed, int bits, int64_t num_rows
 
 NdArray PackFaces(const MatrixX3i& faces, int lag);
 
-/// The lag of 1, 2 and 8 whose differences deflate best.
+/// The lag, out of 1, 2 and 8, whose differences compress best.
 int BestLag(const MatrixX3i& faces);
 
 /// The inverse of PackFaces; every index must lie in 0..limit−1 and, when expected_faces >= 0, their number fit. Throws
@@ -92,7 +92,7 @@ struct PackedPoseCorrectives {
   NdArray block;  ///< 27 residuals of each block
 };
 
-/// The step that the blocks are stored in: a decimal one on which they lie exactly, else a power of two
+/// Step of the grid of the stored blocks: a decimal one if they lie on it exactly, else a power of two
 /// (body_compact.h).
 double PoseGrid(const PoseCorrectives& posedirs);
 

@@ -69,7 +69,7 @@ void PutRows(const std::string& name, const UnitRows& rows, int bits, NpzArrays*
   (*arrays)[name + "_weight"] = std::move(packed.weight);
 }
 
-/// Reads the members of a compact file, naming file and member in every complaint.
+/// Reads the members of a compact file; errors name file and member.
 class CompactBodyReader {
  public:
   CompactBodyReader(const NpzArrays& arrays, const std::string& where) : arrays_(arrays), where_(where) {}
@@ -117,7 +117,7 @@ void PutSurface(const BodyModelData& body, NpzArrays* out) {
     const MeshPredictor predictor(U, body.ft);
     (*out)["vt"] = PackIntegers(predictor.Residuals(GridValues(body.vt, kUvGrid, "vt"), 2));
     if (body.face_iuv.rows() > 0) {
-      // Where every corner of a UV vertex has the same in-part coordinates, one pair a UV vertex is enough.
+      // One pair per UV vertex is enough if all corners of each UV vertex have the same in-part coordinates.
       const Integers corners = GridValues(body.face_iuv, kUvGrid, "face_iuv");
       Integers by_vertex(2 * static_cast<size_t>(U), 0);
       std::vector<bool> known(U, false);

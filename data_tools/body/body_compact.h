@@ -31,7 +31,7 @@ bool IsCompactBody(const NpzArrays& arrays);
 /// `body` must satisfy BodyModel. Throws std::invalid_argument when a value is too large for its grid.
 NpzArrays CompactFromBody(const BodyModelData& body);
 
-/// Throws std::runtime_error "where: …" on anything that CompactFromBody does not write.
+/// Throws std::runtime_error "where: …" for contents that CompactFromBody does not write.
 BodyModelData BodyFromCompact(const NpzArrays& arrays, const std::string& where, const LoadBodyOptions& options);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Finds a body's triangles by their vertices, whatever corner a file starts them at.
+/// Finds a body's triangles by their vertices, independently of their first corner.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ class FacesByVertices {
  public:
   explicit FacesByVertices(const MatrixX3i& faces);
 
-  /// The face with exactly these three vertices, −1 when there is none. When two faces share all three, the first.
+  /// Index of the face with exactly these three vertices, the first if there are several; −1 if there is none.
   [[nodiscard]] int Find(const std::array<int, 3>& vertices) const;
 
  private:
@@ -24,7 +24,7 @@ class FacesByVertices {
   std::unordered_map<std::array<int, 3>, int, Hash> faces_;  // by sorted vertices
 };
 
-/// Which of `vertices` stands at each corner of `face`: vertices[result[c]] = face[c]. All three must occur.
+/// For each corner of `face`, its index in `vertices`: vertices[result[c]] = face[c]. All three must occur.
 std::array<int, 3> CornerOrder(const std::array<int, 3>& face, const std::array<int, 3>& vertices);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Body files in and out. What a file is gets decided by its content, not its name:
+/// Reads and writes body files. The format is recognised by content, not by name:
 ///   zip archive (.npz)  Bodyloom's compact body (body_compact.h), or named arrays: SMPL, SMPL-H (52 joints), SMPL-X
 ///                       (55 joints), and the dense form of the built-in body, which adds UV, parts and landmarks
 ///   anything else       a pickle: SMPL's official .pkl (Python 2, chumpy, scipy), read without Python
@@ -19,7 +19,7 @@ struct LoadBodyOptions {
                                 ///< file's mean hand, so that zero hand angles are a relaxed hand
 };
 
-/// A checked body. Throws std::runtime_error naming file, array and expectation.
+/// Loads and checks a body. Throws std::runtime_error naming file, array and expectation.
 BodyModel LoadBody(const std::string& path, const LoadBodyOptions& options = {});
 
 /// The same from a file's bytes; `where` names it in messages.
@@ -28,13 +28,13 @@ BodyModel LoadBodyBytes(const std::string& bytes, const std::string& where, cons
 /// The arrays of LoadBody: checked, weights and regressor rows normalised, joint names filled in.
 BodyModelData LoadBodyData(const std::string& path, const LoadBodyOptions& options = {});
 
-/// Writes one compact .npz (layout and error bounds in body_compact.h): vertices move by less than 1e-5 m, and what is
-/// loaded from it and saved again is the same file. Throws std::invalid_argument for a body that BodyModel refuses,
+/// Writes one compact .npz (layout and error bounds in body_compact.h): vertices move by less than 1e-5 m, and saving
+/// the loaded body again gives the same file. Throws std::invalid_argument for a body that BodyModel refuses,
 /// std::runtime_error when the file cannot be written.
 void SaveBodyCompact(const std::string& path, const BodyModelData& body);
 
 /// Takes texture coordinates (vt, ft) from a Wavefront OBJ with the body's vertex order. Faces are matched by their
-/// vertices, so their order and first corner may differ; quads match whichever way the body splits them. Throws
+/// vertices, so their order and first corner may differ; quads match for either way of splitting them. Throws
 /// std::runtime_error when vertex counts differ or a face of the body is not in the file.
 void UvFromObj(const std::string& path, BodyModelData* body);
 
@@ -48,7 +48,7 @@ struct PartsSummary {
 /// matched by vertex triple. Throws std::runtime_error when the file or its indices are broken, or nothing matches.
 PartsSummary PartsFromUvProcessedMat(const std::string& path, BodyModelData* body);
 
-/// A few lines of text: sizes, height, what the body has and what it lacks.
+/// A few lines of text: sizes, height, and the optional data present or missing.
 std::string DescribeBody(const BodyModel& body);
 
 }  // namespace bodyloom

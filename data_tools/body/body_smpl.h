@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A body from named arrays, as the official SMPL family files hold them (V vertices, J joints, B shape components):
+/// Builds a body from named arrays, as in the official files of the SMPL family (V vertices, J joints, B shape
+/// components):
 ///   v_template V×3, f F×3, weights V×J, kintree_table 2×J (row 0: parents, the root −1 or 2³²−1), J_regressor J×V;
 ///   optional: shapedirs V×3×B, posedirs V×3×9(J−1), hands_meanl/r 45 (SMPL-H/X), vt U×2 and ft F×3 (SMPL-X);
 ///   the built-in body's dense form adds part F, iu_uv F×3×2, and landmark_names/indptr/indices/weights (CSR).
-/// SMPL-X's expression components (the last 10 of 20 or 100 of 400 in shapedirs) are left out: they are not shape.
-/// Source: smplx body_models.py (keys); assets' RECIPE (built-in).
+/// SMPL-X's expression components (the last 10 of 20 or 100 of 400 in shapedirs) are left out, since they are not
+/// shape. Source: smplx body_models.py (keys); assets' RECIPE (built-in).
 #pragma once
 
 #include <map>
@@ -16,16 +17,16 @@
 
 namespace bodyloom {
 
-/// Arrays by name that live elsewhere.
+/// Borrowed arrays by name.
 class NamedArrays {
  public:
   NamedArrays(const NpzArrays& arrays, std::string where);
-  /// The arrays among a dictionary's values. Throws std::runtime_error when `pickle` is no dictionary.
+  /// Takes the arrays among a dictionary's values. Throws std::runtime_error when `pickle` is not a dictionary.
   NamedArrays(const PickleValue& pickle, std::string where);
 
   [[nodiscard]] const std::string& where() const { return where_; }
   [[nodiscard]] const NdArray* Find(const std::string& name) const;
-  /// The array of numbers `name`, whose shape must fit (−1: any size), or std::runtime_error.
+  /// Returns the array of numbers `name` of this shape (−1: any size); throws std::runtime_error without one.
   [[nodiscard]] const NdArray& Require(const std::string& name, const std::vector<int64_t>& shape) const;
   [[noreturn]] void Fail(const std::string& message) const;
 
@@ -34,7 +35,8 @@ class NamedArrays {
   std::string where_;
 };
 
-/// Not yet checked by BodyModel. Throws std::runtime_error naming file, array, what it is and what was expected.
+/// The result is not yet checked by BodyModel. Throws std::runtime_error naming file, array, what it is and what was
+/// expected.
 BodyModelData BodyFromArrays(const NamedArrays& arrays, const LoadBodyOptions& options);
 
 }  // namespace bodyloom

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The built-in body: an adult mannequin in T-pose on SMPL's 24 joints, so that everything runs with no download.
+/// The built-in body: an adult mannequin in T-pose on SMPL's 24 joints, available without a download.
 ///
 /// 7,874 vertices, 15,744 triangles, 10 shape components in standard deviations (stature, sex, weight, age,
 /// proportions, …), pose correctives, 24 DensePose-style charts, an atlas, COCO-17 and foot landmarks. Body frame: x
-/// left, y up, z front, metres, pelvis joint of the mean shape at the origin. What it promises: docs/built_in_body.md.
+/// left, y up, z front, metres, pelvis joint of the mean shape at the origin. Properties: docs/built_in_body.md.
 #pragma once
 
 #include <memory>

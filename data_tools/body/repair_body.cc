@@ -15,9 +15,10 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kLeastTolerance = 1e-5;  // what a compact file's grids may have moved apart
+constexpr double kMinTolerance = 1e-5;  // displacement that a compact file's grids may cause
 
-/// Whether two vertices are displaced alike by every unit of shape and pose: no entry further apart than `tolerance`.
+/// Returns true if every unit of shape and pose displaces both vertices equally: no entries differ by more than
+/// `tolerance`.
 bool MoveAsOne(const BodyModelData& body, int a, int b, double tolerance) {
   for (int c = 0; c < 3 && body.shapedirs.cols() > 0; ++c) {
     const auto difference = body.shapedirs.row(3 * a + c) - body.shapedirs.row(3 * b + c);
@@ -131,7 +132,7 @@ std::set<int> VerticesThatJointsNeed(const BodyModelData& body) {
   return needed;
 }
 
-/// New numbers that close the gaps where `stays` is false.
+/// New consecutive numbers of the vertices for which `stays` is true.
 std::vector<int> CloseGaps(const std::vector<bool>& stays, int* count) {
   std::vector<int> number(stays.size(), -1);
   *count = 0;
@@ -180,14 +181,14 @@ RepairBodySummary RepairBody(const RepairBodyOptions& options, BodyModelData* bo
   check.same_place_m = options.same_place_m;
   const auto found = [&] { return CheckMesh(body->v_template, body->faces, check); };
   const bool numbered_elsewhere = !StandardLandmarks(*body).empty();
-  for (int round = 0; round < 2; ++round) {  // merging makes faces superfluous, whose vertices may be nobody else's
+  for (int round = 0; round < 2; ++round) {  // merging makes faces superfluous, whose vertices may then be unreferenced
     const std::vector<int> superfluous = SuperfluousFaces(found());
     summary.dropped_faces += static_cast<int>(superfluous.size());
     DropFaces(superfluous, body);
     if (numbered_elsewhere) continue;
     summary.vertices_in_use = summary.vertices_that_part = 0;
     DropUnreferencedVertices(found().unreferenced_vertices, body, &summary);
-    MergeVertices(found().duplicate_vertices, std::max(kLeastTolerance, options.same_place_m), body, &summary);
+    MergeVertices(found().duplicate_vertices, std::max(kMinTolerance, options.same_place_m), body, &summary);
   }
   if (numbered_elsewhere) {
     const CheckMeshResult left = found();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The DensePose-style charts of the built-in body: which of the 24 part ids each face belongs to, its (u,v) inside the
-/// part, and the packed atlas.
+/// DensePose-style charts of the built-in body: the part id (1–24) of each face, its (u,v) inside the part, and the
+/// packed atlas.
 ///
 /// Fifteen chart kinds cover the left half; their mirror images cover the right half. The two torso charts span both
-/// halves, each other kind makes one island a side: 28 islands. Hands and feet have two islands a part.
+/// halves, each other kind makes one island per side: 28 islands. Hands and feet have two islands per part.
 ///   part ids (left/right)  torso back 1, front 2; hand 4/3; foot 5/6; upper leg back 8/7, front 10/9; lower leg back
 ///   12/11, front 14/13; upper arm inner 15/16, outer 17/18; lower arm inner 19/20, outer 21/22; head with neck 24/23
 ///   inside the part        the chart's bounding box fills [.02,.98]²; of a two-island part the first (back of the
@@ -29,7 +29,7 @@ struct ChartKind {
   [[nodiscard]] bool spans_both_halves() const { return left_part == right_part; }
 };
 
-/// In the order in which the body's file stores them.
+/// The kinds in the order of the body's file.
 const std::array<ChartKind, 15>& ChartKinds();
 
 /// Number of islands: one for a kind that spans both halves, two (left, right) for the others; islands are numbered in

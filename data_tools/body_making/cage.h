@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The control cage of the built-in body: a closed, mirror-symmetric quad mesh with named vertices, read from the text
-/// of its left half (assets/body/cage_left_half.txt; layout in assets/body/RECIPE.md, section 3).
+/// The control cage of the built-in body: a closed, mirror-symmetric quad mesh with named vertices, parsed from the
+/// text of its left half (assets/body/cage_left_half.txt; layout in assets/body/RECIPE.md, section 3).
 ///
-/// Text format, one item a line, '#' starts a comment:
+/// Text format, one item per line, '#' starts a comment:
 ///   v NAME X Y Z          metres, body frame (x = body's left, y up, z front), X ≥ 0; X = 0 lies on the mirror plane
 ///   f CHART N1 N2 N3 N4   counter-clockwise seen from outside; CHART is one UV chart name for the whole quad or four
 ///                         names joined by '|', one for each of the quad's first subdivision children

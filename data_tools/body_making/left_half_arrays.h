@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The arrays of the built-in body's .npz file, checked and as they are stored: of the left half only.
+/// Reads and checks the arrays of the built-in body's .npz file, which are those of the left half only.
 #pragma once
 
 #include <string>
@@ -35,7 +35,7 @@ struct LeftHalfArrays {
   std::vector<Eigen::Matrix<double, 2, 3>> atlas_from_chart;
 };
 
-/// What the arrays must fit.
+/// Sizes that the arrays must match.
 struct LeftHalfSizes {
   int cage_vertices = 0;  ///< of the left half
   int left_vertices = 0;  ///< of the subdivided left half

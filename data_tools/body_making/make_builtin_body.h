@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Builds the built-in body from its two source files (assets/body, recipe beside them):
 ///   cage_left_half.txt  left half of the 494-vertex quad cage, with names and UV charts (cage.h)
-///   builtin_body.npz    what cannot be derived from the cage: the ten shape components on the cage, skinning weights,
+///   builtin_body.npz    data not derived from the cage: the ten shape components on the cage, skinning weights,
 ///                       joint regressor, pose correctives, landmarks and chart coordinates, all of the left half
 /// v_template = S2 S1 cage and shapedirs = S2 S1 cage_shape with S1, S2 the operators of two Catmull–Clark levels
 /// (subdivision.h); the right half is the mirror image. Arrays of the .npz: docs/built_in_body.md.
@@ -13,7 +13,7 @@
 
 namespace bodyloom {
 
-/// Contents of the two files and the names under which messages speak of them.
+/// Contents of the two files and their names in messages.
 struct BuiltinBodySources {
   std::string cage_text, cage_name = "cage_left_half.txt";
   std::string parts_bytes, parts_name = "builtin_body.npz";
@@ -29,7 +29,7 @@ struct MakeBuiltinBodySummary {
   int cage_vertices = 0, cage_quads = 0, vertices = 0, quads = 0;
 };
 
-/// The body, and what it was made of in `summary`. Deterministic: same files, same arrays.
+/// Builds the body and fills `summary`. Deterministic: same files, same arrays.
 /// Throws std::runtime_error naming file and array (or line) when a source is damaged or the two do not fit together.
 BodyModelData MakeBuiltinBody(const BuiltinBodySources& sources, MakeBuiltinBodySummary* summary = nullptr);
 

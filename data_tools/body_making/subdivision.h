@@ -33,7 +33,7 @@ SubdivisionLevel SubdivideCatmullClark(int num_vertices, const std::vector<Quad>
 std::vector<int> MirrorOfSubdivision(const std::vector<int>& coarse_mirror, const std::vector<Quad>& coarse_quads,
                                      const SubdivisionLevel& level);
 
-/// Two triangles a quad: (0,1,2) and (0,2,3).
+/// Two triangles per quad: (0,1,2) and (0,2,3).
 MatrixX3i TrianglesOfQuads(const std::vector<Quad>& quads);
 
 }  // namespace bodyloom

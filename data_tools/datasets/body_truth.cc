@@ -8,7 +8,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kMostParts = 24;
+constexpr int kMaxParts = 24;
 
 /// The parts that are known within the person: another's where there are any, else the body's.
 std::vector<uint8_t> KnownParts(const BodySurface& body, std::span<const uint8_t> person,
@@ -16,7 +16,7 @@ std::vector<uint8_t> KnownParts(const BodySurface& body, std::span<const uint8_t
   std::vector<uint8_t> known(body.parts.size(), 0);
   bool any = false;
   for (size_t i = 0; i < parts.size(); ++i) {
-    if (person[i] == 0 || parts[i] > kMostParts) continue;
+    if (person[i] == 0 || parts[i] > kMaxParts) continue;
     known[i] = parts[i];
     any = any || parts[i] != 0;
   }

@@ -23,7 +23,7 @@ constexpr int kMultiPersonVersion = 1;
 
 std::string FileOf(const std::string& path) { return (fs::path(path) / "people.json").string(); }
 
-/// A folder below the dataset and nowhere else.
+/// Returns the path of a folder, which must lie below the dataset.
 bool StaysInside(const fs::path& clip) {
   if (clip.empty() || clip.is_absolute()) return false;
   for (const fs::path& step : clip) {
@@ -107,7 +107,7 @@ Image PeopleSheet(const std::string& dataset, int rows, int columns, int cell_he
   for (const int p : EvenlySpreadFrames(static_cast<int>(set.people.size()), rows)) {
     const std::vector<std::string>& clips = set.people[p].clips;
     for (int column = 0; column < columns; ++column) {
-      // Clips in turn, and through each of them from its first picture to its last.
+      // Clips in turn, and through each of them from its first image to its last.
       const SinglePersonDataset clip((std::filesystem::path(set.path) / clips[column % clips.size()]).string());
       const int round = column / static_cast<int>(clips.size());
       const int rounds = (columns + static_cast<int>(clips.size()) - 1) / static_cast<int>(clips.size());

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A multi-person dataset: a folder with clips of many people, what the one-photo renderers train on.
+/// A multi-person dataset: a folder with clips of many people, the training data of the one-photo renderers.
 ///
 ///   DIR/people.json   {"format": "bodyloom people set", "version": 1, "size": S,
 ///                      "people": [{"name": "p000", "split": "train" or "test", "clips": ["p000/a0_v0", …]}, …]}
 ///                     and, as information, "seed" and "command"
 ///   DIR/p000/a0_v0/   a single-person dataset (single_person_dataset.h): person 0 in action 0 seen by view 0; its
-///                     frames need not follow each other closely
-/// All clips of a person show the same body in the same clothes. people.json is written last: a folder without it is no
-/// dataset, or an unfinished one.
+///                     frames need not be consecutive
+/// All clips of a person show the same body in the same clothes. people.json is written last: a folder without it is
+/// not a dataset, or an unfinished one.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct DatasetPerson {
 
 struct MultiPersonDataset {
   std::string path;
-  int size = 0;  ///< pixels of the pictures' sides
+  int size = 0;  ///< side of the images, pixels
   std::vector<DatasetPerson> people;
   // Information only.
   uint64_t seed = 0;
@@ -34,12 +34,12 @@ struct MultiPersonDataset {
 };
 
 /// Throws std::runtime_error naming the file and place: no people.json, another format, no people, a clip whose folder
-/// leads out of the dataset or is not there.
+/// is outside the dataset or missing.
 MultiPersonDataset ReadMultiPersonDataset(const std::string& path);
 
-/// What a clip's name says of it: views of one action have equal actions, frame by frame of the same poses; clips of
-/// one view were taken from the same side. Of "p000/a0_v1": "p000/a0" and "v1"; a clip whose name does not end in _v
-/// and a number is an action and a view of its own.
+/// Action and view of a clip by its name: clips of one action show the same poses frame by frame, clips of one view
+/// were taken from the same side. For "p000/a0_v1": "p000/a0" and "v1"; a clip whose name does not end in _v and a
+/// number is an action and a view of its own.
 struct ClipPlace {
   std::string action, view;
 };
@@ -48,7 +48,7 @@ ClipPlace PlaceOfClip(const std::string& clip);
 /// Writes people.json alone. Throws std::runtime_error "path: why".
 void WriteMultiPersonDataset(const MultiPersonDataset& set);
 
-// A contact sheet of a multi-person dataset: a row a person, pictures of evenly spread clips side by side.
+// A contact sheet of a multi-person dataset: a row per person, images of evenly spread clips side by side.
 
 /// At most `rows` people, evenly spread over the dataset. Throws as ReadMultiPersonDataset and SinglePersonDataset.
 Image PeopleSheet(const std::string& dataset, int rows = 8, int columns = 8, int cell_height_px = 160);

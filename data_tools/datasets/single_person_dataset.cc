@@ -25,27 +25,25 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSinglePersonFormat = "bodyloom person set";
 constexpr int kSinglePersonVersion = 1;
-constexpr int kMostFrames = 1'000'000;
-constexpr int kMostPixels = 16384;
+constexpr int kMaxFrames = 1'000'000;
+constexpr int kMaxPixels = 16384;
 
-/// A kind of picture: its folder, where it lies in a frame, and whether datasets and readers name it.
+/// A kind of image: its folder, its member of a frame, and its flag in datasets and requests.
 struct FolderKind {
   const char* folder;
-  const char* name;  ///< in "has"; null: always there
-  Image PersonFrame::*picture;
-  bool PersonPictures::*flag;
+  const char* name;  ///< in "has"; null: always present
+  Image PersonFrame::*image;
+  bool RenderedPeople::*flag;
 };
 
 const std::array<FolderKind, 5> kKinds = {
     {{"images", nullptr, &PersonFrame::rgb, nullptr},
-     {"labels", "labels", &PersonFrame::labels, &PersonPictures::labels},
-     {"normals", "normals", &PersonFrame::normals, &PersonPictures::normals},
-     {"iuv", "iuv", &PersonFrame::iuv, &PersonPictures::iuv},
-     {"backgrounds", "background", &PersonFrame::background, &PersonPictures::background}}};
+     {"labels", "labels", &PersonFrame::labels, &RenderedPeople::labels},
+     {"normals", "normals", &PersonFrame::normals, &RenderedPeople::normals},
+     {"iuv", "iuv", &PersonFrame::iuv, &RenderedPeople::iuv},
+     {"backgrounds", "background", &PersonFrame::background, &RenderedPeople::background}}};
 
-bool IsIn(const FolderKind& kind, const PersonPictures& pictures) {
-  return kind.flag == nullptr || pictures.*kind.flag;
-}
+bool IsIn(const FolderKind& kind, const RenderedPeople& images) { return kind.flag == nullptr || images.*kind.flag; }
 
 std::string FileOf(const std::string& path, const char* name) { return (fs::path(path) / name).string(); }
 
@@ -73,9 +71,9 @@ SinglePersonDatasetInfo ReadInfo(const std::string& path) {
     root.At("format").Fail(std::string("\"") + kSinglePersonFormat + "\"");
   IntegerIn(root.At("version"), kSinglePersonVersion, kSinglePersonVersion);
   SinglePersonDatasetInfo info;
-  info.num_frames = IntegerIn(root.At("frames"), 1, kMostFrames);
-  info.width = IntegerIn(root.At("width"), 1, kMostPixels);
-  info.height = IntegerIn(root.At("height"), 1, kMostPixels);
+  info.num_frames = IntegerIn(root.At("frames"), 1, kMaxFrames);
+  info.width = IntegerIn(root.At("width"), 1, kMaxPixels);
+  info.height = IntegerIn(root.At("height"), 1, kMaxPixels);
   info.fps = root.At("fps").Number();
   if (!(info.fps > 0)) root.At("fps").Fail("frames a second");
   const JsonNode labels = root.At("labels");
@@ -106,17 +104,17 @@ void CheckLabels(const std::string& file, const Image& labels) {
   }
 }
 
-/// PNG bytes; labels as one channel. A low effort: level 6 takes three times as long for 7 % fewer bytes.
+/// PNG bytes; labels as one channel. Low compression level: level 6 takes three times as long for 7 % fewer bytes.
 std::string PngOf(const Image& image, bool one_channel) {
-  cv::Mat picture = MatOf(image);
+  cv::Mat pixels = MatOf(image);
   if (one_channel) {
-    picture.create(image.height, image.width, CV_8UC1);
+    pixels.create(image.height, image.width, CV_8UC1);
     for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) picture.at<uchar>(y, x) = image.pixel(x, y)[0];
+      for (int x = 0; x < image.width; ++x) pixels.at<uchar>(y, x) = image.pixel(x, y)[0];
     }
   }
   std::vector<uchar> bytes;
-  cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 2});
+  cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, 2});
   return {bytes.begin(), bytes.end()};
 }
 
@@ -126,7 +124,7 @@ void MakeFolder(const std::string& folder) {
   if (error) throw std::runtime_error(folder + ": cannot make the folder: " + error.message());
 }
 
-/// Whether a file is named as frames of datasets are: six digits (or more) and .png.
+/// Returns true if a file is named like a frame of a dataset: six digits (or more) and .png.
 bool IsFrameName(const std::string& name) {
   return name.size() >= 10 && name.ends_with(".png") &&
          std::all_of(name.begin(), name.end() - 4, [](char c) { return c >= '0' && c <= '9'; });
@@ -182,7 +180,7 @@ Track SinglePersonDataset::track() const {
   return track;
 }
 
-PersonFrame SinglePersonDataset::Read(int t, const PersonPictures& wanted) const {
+PersonFrame SinglePersonDataset::Read(int t, const RenderedPeople& wanted) const {
   BODYLOOM_CHECK(t >= 0 && t < info_.num_frames, path_, ": frame ", t, ", expected 0 to ", info_.num_frames - 1);
   PersonFrame frame;
   for (const FolderKind& kind : kKinds) {
@@ -193,8 +191,8 @@ PersonFrame SinglePersonDataset::Read(int t, const PersonPictures& wanted) const
       throw std::runtime_error(Concatenate(file, ": found ", image.width, "x", image.height, " pixels, expected ",
                                            info_.width, "x", info_.height, " as in person.json"));
     }
-    if (kind.picture == &PersonFrame::labels) CheckLabels(file, image);
-    frame.*kind.picture = std::move(image);
+    if (kind.image == &PersonFrame::labels) CheckLabels(file, image);
+    frame.*kind.image = std::move(image);
   }
   return frame;
 }
@@ -202,9 +200,9 @@ PersonFrame SinglePersonDataset::Read(int t, const PersonPictures& wanted) const
 SinglePersonDatasetWriter::SinglePersonDatasetWriter(std::string path, const SinglePersonDatasetInfo& info,
                                                      const Track& track)
     : path_(std::move(path)), info_(info) {
-  BODYLOOM_CHECK(info.num_frames >= 1 && info.num_frames <= kMostFrames && track.num_frames() == info.num_frames, path_,
+  BODYLOOM_CHECK(info.num_frames >= 1 && info.num_frames <= kMaxFrames && track.num_frames() == info.num_frames, path_,
                  ": ", info.num_frames, " frames, ", track.num_frames(), " in the track");
-  BODYLOOM_CHECK(info.width >= 1 && info.height >= 1 && info.width <= kMostPixels && info.height <= kMostPixels &&
+  BODYLOOM_CHECK(info.width >= 1 && info.height >= 1 && info.width <= kMaxPixels && info.height <= kMaxPixels &&
                      track.camera.width == info.width && track.camera.height == info.height,
                  path_, ": size ", info.width, "x", info.height, ", ", track.camera.width, "x", track.camera.height,
                  " in the track");
@@ -220,10 +218,10 @@ void SinglePersonDatasetWriter::Write(int t, const PersonFrame& frame) const {
   BODYLOOM_CHECK(t >= 0 && t < info_.num_frames, path_, ": frame ", t, ", expected 0 to ", info_.num_frames - 1);
   for (const FolderKind& kind : kKinds) {
     if (!IsIn(kind, info_.has)) continue;
-    const Image& image = frame.*kind.picture;
+    const Image& image = frame.*kind.image;
     BODYLOOM_CHECK(image.width == info_.width && image.height == info_.height, FileOfFrame(path_, kind, t), ": ",
                    image.width, "x", image.height, " pixels to write, expected ", info_.width, "x", info_.height);
-    WriteFileAtomically(FileOfFrame(path_, kind, t), PngOf(image, kind.picture == &PersonFrame::labels));
+    WriteFileAtomically(FileOfFrame(path_, kind, t), PngOf(image, kind.image == &PersonFrame::labels));
   }
 }
 
@@ -252,16 +250,16 @@ Colour PersonLabelColour(PersonLabel label) {
   return kColours[static_cast<size_t>(label)];
 }
 
-Image PersonLabelPicture(const Image& labels) {
-  Image picture(labels.width, labels.height);
+Image PersonLabelImage(const Image& labels) {
+  Image image(labels.width, labels.height);
   for (int y = 0; y < labels.height; ++y) {
     for (int x = 0; x < labels.width; ++x) {
       const Colour c = PersonLabelColour(PersonLabel(std::min<int>(labels.pixel(x, y)[0], kNumPersonLabels - 1)));
-      uint8_t* const p = picture.pixel(x, y);
+      uint8_t* const p = image.pixel(x, y);
       p[0] = c.blue, p[1] = c.green, p[2] = c.red;
     }
   }
-  return picture;
+  return image;
 }
 
 PersonSheet::PersonSheet(int num_frames, int columns) : wanted_(EvenlySpreadFrames(num_frames, columns)) {}
@@ -270,13 +268,13 @@ void PersonSheet::Take(int t, const PersonFrame& frame) {
   if (std::binary_search(wanted_.begin(), wanted_.end(), t)) frames_.push_back(frame);
 }
 
-Image PersonSheet::Picture(int cell_height_px) const {
+Image PersonSheet::Draw(int cell_height_px) const {
   BODYLOOM_CHECK(!frames_.empty(), "person sheet: no frame was taken");
   std::vector<Image> cells;
-  for (const auto picture : {&PersonFrame::rgb, &PersonFrame::labels, &PersonFrame::normals, &PersonFrame::iuv}) {
-    if ((frames_.front().*picture).empty()) continue;
+  for (const auto image : {&PersonFrame::rgb, &PersonFrame::labels, &PersonFrame::normals, &PersonFrame::iuv}) {
+    if ((frames_.front().*image).empty()) continue;
     for (const PersonFrame& frame : frames_) {
-      cells.push_back(picture == &PersonFrame::labels ? PersonLabelPicture(frame.labels) : frame.*picture);
+      cells.push_back(image == &PersonFrame::labels ? PersonLabelImage(frame.labels) : frame.*image);
     }
   }
   return ContactSheet(cells,

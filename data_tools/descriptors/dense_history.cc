@@ -11,7 +11,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kMostBytes = size_t{512} << 20;
+constexpr size_t kMaxBytes = size_t{512} << 20;
 constexpr float kUnit = 65535;
 
 /// 0: left, 1: right, 2: middle.
@@ -75,7 +75,7 @@ std::shared_ptr<const DenseHistory::Planes> DenseHistory::PlanesOf(int t) const 
   auto made = std::make_shared<const Planes>(MakePlanes(t));
   const std::lock_guard lock(mutex_);
   if (kept_.emplace(t, made).second) order_.push_back(t);
-  while (order_.size() > 1 && order_.size() * made->size() * sizeof(uint16_t) > kMostBytes) {
+  while (order_.size() > 1 && order_.size() * made->size() * sizeof(uint16_t) > kMaxBytes) {
     kept_.erase(order_.front());
     order_.pop_front();
   }

@@ -21,7 +21,7 @@ using describe_internal::kFramesInFlight;
 
 namespace {
 
-/// What is known before any map is made.
+/// Data prepared before the first map.
 DescribeTrackSummary SummaryOf(const DescriptorMaps& maps, int num_frames) {
   DescribeTrackSummary summary;
   summary.channels = maps.channels();
@@ -55,7 +55,7 @@ void AddCounts(const DescriptorMaps::Counts& counts, DescribeTrackSummary* summa
   summary->normal_texels_cancelled += counts.normal_texels_cancelled;
 }
 
-/// The maps of a frame, three planes each, also where they lie one behind the other.
+/// The maps of a frame, three planes each, separately or contiguous.
 std::vector<std::span<const char>> EachMap(DescriptorMaps::Maps maps, size_t map_bytes) {
   std::vector<std::span<const char>> each;
   for (const std::span<const char> several : maps) {
@@ -75,7 +75,7 @@ DescribeTrackSummary Describe(const BodyModel& body, const Track& track, const s
   NpyStream stream(path, options.half ? DType::kF16 : DType::kF32,
                    {summary.frames, summary.channels, summary.texels.height, summary.texels.width});
   summary.bytes = stream.record_bytes() * outputs.size();
-  clock.Book("prepare and reserve");
+  clock.Record("prepare and reserve");
   std::vector<char> has_fit(track.num_frames());
   for (int t = 0; t < track.num_frames(); ++t) has_fit[t] = maps.HasFit(t);
   DescriptorPreview preview(options, maps.texels(), outputs, has_fit);
@@ -84,9 +84,9 @@ DescribeTrackSummary Describe(const BodyModel& body, const Track& track, const s
     const std::span<const int> chunk =
         std::span(outputs).subspan(first, std::min<size_t>(kFramesInFlight, outputs.size() - first));
     maps.PoseFor(chunk);
-    clock.Book("skin");
+    clock.Record("skin");
     maps.Make();
-    clock.Book("normals, velocities, bake");
+    clock.Record("normals, velocities, bake");
     const int count = static_cast<int>(chunk.size());
     std::vector<DescriptorMaps::FrameSummary> frames(count);
     ParallelFor(count, options.num_threads, [&](int i) {
@@ -105,13 +105,13 @@ DescribeTrackSummary Describe(const BodyModel& body, const Track& track, const s
         preview.Add(chunk[i], EachMap(of_frame, maps.map_bytes()));
       });
     }
-    clock.Book("write");
+    clock.Record("write");
   }
   stream.Finish();
-  clock.Book("flush to disk");
+  clock.Record("flush to disk");
   AddCounts(maps.counts(), &summary);
   summary.seconds = clock.seconds();
-  if (options.preview_frames > 0) summary.preview = preview.Picture();
+  if (options.preview_frames > 0) summary.preview = preview.Draw();
   return summary;
 }
 
@@ -145,7 +145,7 @@ DescribeTrackSummary DescribeTrack(const BodyModel& body, const Track& track, co
     WriteFileAtomically(DescriptorHeaderPath(out_npy), DescriptorHeaderJson(body, track, options, summary, outputs));
   } catch (...) {
     std::error_code ignored;
-    std::filesystem::remove(out_npy, ignored);  // without its header nobody can tell what it holds
+    std::filesystem::remove(out_npy, ignored);  // without its header its contents are unknown
     throw;
   }
   return summary;

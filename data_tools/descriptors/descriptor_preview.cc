@@ -52,7 +52,7 @@ void DescriptorPreview::Add(int frame, const std::vector<std::span<const char>>&
   rows_.push_back(std::move(row));
 }
 
-Image DescriptorPreview::Picture() const {
+Image DescriptorPreview::Draw() const {
   const int width = table_.width, height = table_.height, pixels = width * height;
   const auto is_velocity = [&](size_t i) { return !options_.normals || columns_[i] > 0; };
   float fastest = 1e-6F;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A sheet by which a descriptor file is judged at a glance: a row a frame, a column a map. Normals are drawn as
-/// colours (n + 1)/2, velocities grey at rest with a full colour at the largest speed of the sheet.
+/// Preview sheet of a descriptor file: a row per frame, a column per map. Normals are drawn as colours (n + 1)/2,
+/// velocities grey at rest with a full colour at the largest speed of the sheet.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ class DescriptorPreview {
   [[nodiscard]] bool Wants(int frame) const;
   /// The maps of a wanted frame, in the order of the channels, three planes each.
   void Add(int frame, const std::vector<std::span<const char>>& maps);
-  [[nodiscard]] Image Picture() const;
+  [[nodiscard]] Image Draw() const;
 
  private:
   struct Row {

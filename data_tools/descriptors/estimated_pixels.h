@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the pixels of a clip show of the body by estimates from its pictures, DensePose's IUV images, in place of the
-/// tracked body's own (PersonFrames::BodyMaps).
+/// Surface coordinates of a clip's pixels from estimates, DensePose's IUV images, as a replacement for those of the
+/// tracked body (PersonFrames::BodyMaps).
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@ namespace bodyloom {
 
 class EstimatedPixels {
  public:
-  static constexpr double kMaxGap = 0.05;  ///< chart units: a label farther outside its chart shows nothing
+  static constexpr double kMaxGap = 0.05;  ///< chart units: a label farther outside its chart is ignored
 
-  /// Frame t's is the folder's picture `first` + t in the order of their numbers: of those whose names end in _IUV
-  /// where there are any. `path` may also be one picture, of a clip of one frame. Keeps a reference to the body. Throws
+  /// Frame t is image number `first` + t of the folder in the order of their numbers, counting only names that end in
+  /// _IUV if there are any. `path` may also be an image, for a clip of one frame. Keeps a reference to the body. Throws
   /// std::runtime_error naming the path when it has too few for `num_frames`, std::invalid_argument when the body has
   /// no charts or no atlas.
   EstimatedPixels(const BodyModel& body, const std::string& path, int num_frames, int first = 0);
 
-  /// Frame t's window: atlas coordinates (2 × height × width, 0 elsewhere) and a mask (height × width), each pixel that
-  /// of the nearest pixel of the picture; `parts` (height × width, or empty), 0 elsewhere. May be called by several
-  /// threads. Throws std::runtime_error naming a picture that is no IUV image or not of the size that the window was
-  /// planned for.
+  /// Writes frame t's window: atlas coordinates (2 × height × width, 0 elsewhere) and a mask (height × width), sampled
+  /// at the nearest pixel of the image; `parts` (height × width, or empty), 0 elsewhere. May be called by several
+  /// threads. Throws std::runtime_error naming an image that is not an IUV image or does not have the size for which
+  /// the window was planned.
   void BodyMaps(const PersonWindow& window, int t, std::span<float> uv, std::span<float> mask,
                 std::span<uint8_t> parts = {}) const;
 

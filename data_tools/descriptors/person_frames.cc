@@ -159,7 +159,7 @@ class PersonFrames::Impl {
   [[nodiscard]] int Segment(int t) const { return segment_.at(InTrack(t)); }
 
  private:
-  /// What the pixels of frame t's window see of the body.
+  /// Resolves the body's surface at the pixels of frame t's window.
   ResolvedPixels Resolve(int t, const ResolveRequest& request, VisibilityBuffer* buffer) const {
     const MatrixX3d vertices = posed_.Vertices(t);
     const Camera camera = CameraInWindow(shown_.CameraAt(t), window_, t);
@@ -184,7 +184,7 @@ class PersonFrames::Impl {
 
   [[nodiscard]] int InTrack(int t) const { return options_.shown.empty() ? t : options_.shown.at(t); }
 
-  /// Frame t's turn of the view, in the axes of the maps: as if the body turned before a camera that stays.
+  /// Frame t's rotation of the view in the axes of the maps, as a rotation of the body in front of a fixed camera.
   [[nodiscard]] Eigen::Matrix3d TurnOfAxes(int t) const {
     if (options_.motion.frame != SurfaceFrame::kWorld) return posed_.Turn(t);
     const Eigen::Matrix3d& camera_from_world = options_.motion.camera_pose.camera_from_world_rotation;
@@ -200,7 +200,7 @@ class PersonFrames::Impl {
     DescribeTrackOptions describe;
     static_cast<SurfaceMotion&>(describe) = options_.motion;
     describe.texels.width = describe.texels.height = options_.uv_size;
-    describe.past = 1;  // the maps of the frames before are theirs, and put together when requested
+    describe.past = 1;  // earlier velocity maps are stored with their own frames and combined on request
     describe.half = true;
     describe.num_threads = options_.num_threads;
     const ScratchFile file{ScratchPath(options_.scratch_dir)};
@@ -220,7 +220,7 @@ class PersonFrames::Impl {
   const Track& shown_;
   PosedTrack posed_;
   PersonWindow window_;
-  std::optional<MappedNpy> stored_;  ///< normals and velocities of each frame; its file has no name any more
+  std::optional<MappedNpy> stored_;  ///< normals and velocities of each frame; the file is unlinked
   std::vector<int> segment_;         ///< gap-free run of each frame of the track, −1: none
 };
 

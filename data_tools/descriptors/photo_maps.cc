@@ -12,7 +12,7 @@
 #include "geometry/uv_maps/uv_bake.h"
 #include "render/raster/resolve_pixels.h"
 #include "render/raster/visibility_buffer.h"
-#include "render/texture/texel_sight.h"
+#include "render/texture/texel_visibility.h"
 #include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
@@ -54,7 +54,7 @@ class PhotoMaps::Impl {
                    " pixels, a texture of ", options.texture_size, " texels");
     BODYLOOM_CHECK(body.has_parts(), "photo maps: the body model has no parts");
     BODYLOOM_CHECK(options.yaw_deg.empty() || options.estimated == nullptr,
-                   "photo maps: estimates show the picture's own view");
+                   "photo maps: estimates show the image's own view");
     window_ = SquareWindow(posed_, track.camera, options);
     table_ = options.texels;
     if (table_ == nullptr) {
@@ -85,10 +85,10 @@ class PhotoMaps::Impl {
     VisibilityBuffer buffer;
     buffer.Render(vertices, body_.data().faces, camera);
     FillPixels(vertices, camera, buffer, &map);
-    TexelSightOptions sight;
+    TexelVisibilityOptions sight;
     sight.min_cosine = 0.15;
-    sight.whole_footprint = true;  // no colour of what lies behind
-    const std::vector<TexelSight> seen = SeeTexels(*table_, body_, vertices, camera, buffer, sight);
+    sight.whole_footprint = true;  // no colour of surfaces behind
+    const std::vector<TexelVisibility> seen = ComputeTexelVisibility(*table_, body_, vertices, camera, buffer, sight);
     for (size_t i = 0; i < table_->size(); ++i) {
       if (!(seen[i].cosine > 0)) continue;
       const size_t at = table_->pixel[i];
@@ -159,7 +159,7 @@ struct Corner {
   Vector2d pixel, texel;
 };
 
-/// Texels whose centres lie within the triangle, or no farther beyond it than `beyond`, and which nothing showed yet.
+/// Texels whose centres lie within the triangle, or at most `beyond` outside it, and that have no position yet.
 void FillTriangle(const std::array<Corner, 3>& corners, double beyond, uint8_t part,
                   std::span<const uint8_t> texel_parts, int U, TexelPlaces* places) {
   const Vector2d a = corners[0].texel, ab = corners[1].texel - a, ac = corners[2].texel - a;
@@ -200,7 +200,7 @@ TexelPlaces TexelsOfPixels(std::span<const float> uv, std::span<const uint8_t> p
     return Corner{Vector2d(x, y), Vector2d(uv[i] * U - 0.5, (1 - uv[area + i]) * U - 0.5)};
   };
   const auto part = [&](int x, int y) { return parts[size_t(y) * width + x]; };
-  // Last what lies at the rim of the pixels that show a part: a pixel stands for half of one around its centre.
+  // Finally the rim of the pixels that show a part: a pixel covers half a pixel around its centre.
   for (const double beyond : {kInside, kHalfAPixel}) {
     for (int y = 0; y + 1 < height; ++y) {
       for (int x = 0; x + 1 < width; ++x) {

@@ -38,7 +38,7 @@ std::optional<Placed> PlaceIn(const Camera& camera, const std::optional<PelvisIn
                                           Vector3d(ray.x(), ray.y(), 1).normalized())};
 }
 
-/// Where frame t's landmarks have the pelvis, and how far from there it may be.
+/// Pelvis position by frame t's landmarks, and the reach around it.
 struct SeenPelvis {
   Vector2d pixel = Vector2d::Zero();
   double reach_m = 0;
@@ -120,7 +120,7 @@ int PersonSeenAs(const BodyEstimate& estimate, const KeypointSequence& keypoints
   };
   const int left = column("left_hip"), right = column("right_hip");
   int best = -1;
-  double most = 0;
+  double maximum = 0;
   for (size_t p = 0; p < estimate.people.size(); ++p) {
     const PersonEstimate& person = estimate.people[p];
     double score = 0;
@@ -131,8 +131,8 @@ int PersonSeenAs(const BodyEstimate& estimate, const KeypointSequence& keypoints
       if (!where || !seen) continue;
       score += std::max(0.0, 1 - (seen->pixel - where->pixel).norm() / (where->reach_m * seen->px_per_metre));
     }
-    if (score > most) {
-      most = score;
+    if (score > maximum) {
+      maximum = score;
       best = static_cast<int>(p);
     }
   }

@@ -37,7 +37,8 @@ void SortFrames(const std::string& where, PersonEstimate* person) {
     sorted.cameras[i] = person->cameras[order[i]];
     if (!sorted.landmarks.empty()) sorted.landmarks[i] = person->landmarks[order[i]];
     if (i > 0 && sorted.frames[i] == sorted.frames[i - 1]) {
-      Refuse(where, Concatenate("person ", PrintableText(person->name), ": frame ", sorted.frames[i], " occurs twice"));
+      ThrowFileError(
+          where, Concatenate("person ", PrintableText(person->name), ": frame ", sorted.frames[i], " occurs twice"));
     }
   }
   *person = std::move(sorted);
@@ -54,11 +55,12 @@ RowMatrixXd RequireShape(const NdArray& array, const std::vector<int64_t>& shape
     expected += (d == 0 ? "" : "x") + (shape[d] < 0 ? std::string("n") : std::to_string(shape[d]));
   }
   if (!fits) {
-    Refuse(where, key, (array.is_number() ? array.ShapeText() : "not numbers") + std::string(", expected ") + expected);
+    ThrowFileError(where, key,
+                   (array.is_number() ? array.ShapeText() : "not numbers") + std::string(", expected ") + expected);
   }
   RowMatrixXd matrix = array.ToMatrix();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    if (!matrix.row(i).allFinite()) Refuse(where, key, Concatenate("row ", i, " is not finite"));
+    if (!matrix.row(i).allFinite()) ThrowFileError(where, key, Concatenate("row ", i, " is not finite"));
   }
   return matrix;
 }
@@ -68,8 +70,8 @@ std::vector<int> RequireFrameNumbers(const NdArray& array, int64_t count, const 
   RequireShape(array, {count}, where, key);
   std::vector<int> frames;
   for (const int64_t number : WholeNumbers(array, key, where)) {
-    if (number < 0 || number >= kMostEstimateFrames) {
-      Refuse(where, key, Concatenate(number, ", expected frame numbers from 0 to ", kMostEstimateFrames - 1));
+    if (number < 0 || number >= kMaxEstimateFrames) {
+      ThrowFileError(where, key, Concatenate(number, ", expected frame numbers from 0 to ", kMaxEstimateFrames - 1));
     }
     frames.push_back(static_cast<int>(number));
   }
@@ -77,18 +79,19 @@ std::vector<int> RequireFrameNumbers(const NdArray& array, int64_t count, const 
 }
 
 Eigen::VectorXd MeanBetas(const NdArray& array, int64_t n, const std::string& where) {
-  constexpr Eigen::Index kMostBetas = 300;
+  constexpr Eigen::Index kMaxBetas = 300;
   const RowMatrixXd betas = RequireShape(array, {n, -1}, where, "betas");
-  if (betas.cols() > kMostBetas) Refuse(where, "betas", Concatenate(betas.cols(), " a frame, expected ", kMostBetas));
+  if (betas.cols() > kMaxBetas)
+    ThrowFileError(where, "betas", Concatenate(betas.cols(), " a frame, expected ", kMaxBetas));
   return n > 0 ? Eigen::VectorXd(betas.colwise().mean().transpose()) : Eigen::VectorXd::Zero(betas.cols());
 }
 
 Eigen::Vector3d AxisAngleFromRows(const Eigen::Ref<const Eigen::RowVectorXd>& nine, const std::string& where,
                                   const std::string& key) {
-  constexpr double kMostOff = 1e-2;  // float16 and averaged matrices are off by less
+  constexpr double kMaxOff = 1e-2;  // float16 and averaged matrices are off by less
   Eigen::Matrix3d matrix;
   for (int r = 0; r < 3; ++r) matrix.row(r) = nine.segment<3>(3 * r);
-  if (!IsRotation(matrix, kMostOff)) Refuse(where, key, "expected rotation matrices, row by row");
+  if (!IsRotation(matrix, kMaxOff)) ThrowFileError(where, key, "expected rotation matrices, row by row");
   return AxisAngleFromRotation(NearestRotation(matrix));
 }
 
@@ -123,7 +126,7 @@ BodyEstimate SmplPeople(
 
 void SortEstimate(const std::string& where, BodyEstimate* estimate) {
   std::erase_if(estimate->people, [](const PersonEstimate& person) { return person.frames.empty(); });
-  if (estimate->people.empty()) Refuse(where, estimate->system + ": nobody in any frame");
+  if (estimate->people.empty()) ThrowFileError(where, estimate->system + ": nobody in any frame");
   std::vector<std::pair<double, size_t>> order;
   for (size_t p = 0; p < estimate->people.size(); ++p) {
     SortFrames(where, &estimate->people[p]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the readers of estimates share: arrays of checked shape, people from rows, and their order.
+/// Helpers of the estimate readers: arrays of checked shape, people from rows, and their order.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@
 
 namespace bodyloom {
 
-/// Frames of estimates beyond this are refused: nine hours at 30 frames a second.
-inline constexpr int64_t kMostEstimateFrames = 1'000'000;
+/// Largest number of frames of an estimate: nine hours at 30 frames per second.
+inline constexpr int64_t kMaxEstimateFrames = 1'000'000;
 
 /// The numbers of an array of this shape as a matrix (−1: any size). Throws std::runtime_error "where: key: …" for
-/// another shape, for what holds no numbers, and for numbers that are not finite.
+/// another shape and for values that are not finite numbers.
 RowMatrixXd RequireShape(const NdArray& array, const std::vector<int64_t>& shape, const std::string& where,
                          const std::string& key);
 
-/// Frame numbers: whole, not negative, at most kMostEstimateFrames. Throws std::runtime_error "where: key: …".
+/// Frame numbers: whole, not negative, at most kMaxEstimateFrames. Throws std::runtime_error "where: key: …".
 std::vector<int> RequireFrameNumbers(const NdArray& array, int64_t count, const std::string& where,
                                      const std::string& key);
 
@@ -37,14 +37,14 @@ Eigen::Vector3d AxisAngleFromRows(const Eigen::Ref<const Eigen::RowVectorXd>& ni
 Camera CentredCamera(int width, int height, double focal_px);
 
 /// People of SMPL's body by name in one dictionary, each with `pose` (n×72 axis-angle), `betas` and `frame_ids`, as
-/// VIBE and WHAM write them. `rest` sets what else a system knows of a person (its values; "where: person NAME"; trans
+/// VIBE and WHAM write them. `rest` sets the system's other values of a person (its values; "where: person NAME"; trans
 /// is 0 and there are no cameras yet). Throws as RequireShape(), RequireFrameNumbers() and SortEstimate().
 BodyEstimate SmplPeople(
     const PickleValue& file, const std::string& where, const std::string& system,
     const std::function<void(const PickleValue& values, const std::string& place, PersonEstimate* person)>& rest);
 
-/// Puts every person's entries into the order of their frames, and people into that of size times time in view; people
-/// without a frame are dropped. Throws std::runtime_error "where: …" when a frame occurs twice or nobody is left.
+/// Sorts every person's entries by frame, and people by size times time in view; people without a frame are dropped.
+/// Throws std::runtime_error "where: …" when a frame occurs twice or no person remains.
 void SortEstimate(const std::string& where, BodyEstimate* estimate);
 
 }  // namespace bodyloom

@@ -11,20 +11,21 @@
 namespace bodyloom {
 namespace {
 
-/// How far sx·W may be from sy·H before the image size cannot be VIBE's.
-constexpr double kMostAspectError = 0.02;
+/// Tolerance of sx·W = sy·H, beyond which the image size cannot be VIBE's.
+constexpr double kMaxAspectError = 0.02;
 
 Camera WeakCamera(const Eigen::Ref<const Eigen::RowVectorXd>& orig_cam, int width, int height, const std::string& place,
                   Eigen::Index row) {
   const double x_scale = 0.5 * width * orig_cam[0], y_scale = 0.5 * height * orig_cam[1];
   if (!(x_scale > 0) || !(y_scale > 0)) {
-    Refuse(place, "orig_cam",
-           Concatenate("row ", row, " has scales ", orig_cam[0], " and ", orig_cam[1], ", expected positive ones"));
+    ThrowFileError(
+        place, "orig_cam",
+        Concatenate("row ", row, " has scales ", orig_cam[0], " and ", orig_cam[1], ", expected positive ones"));
   }
-  if (std::abs(x_scale / y_scale - 1) > kMostAspectError) {
-    Refuse(place, "orig_cam",
-           Concatenate("made for images whose width is ", orig_cam[1] / orig_cam[0], " times their height, expected ",
-                       width, "x", height));
+  if (std::abs(x_scale / y_scale - 1) > kMaxAspectError) {
+    ThrowFileError(place, "orig_cam",
+                   Concatenate("made for images whose width is ", orig_cam[1] / orig_cam[0],
+                               " times their height, expected ", width, "x", height));
   }
   Camera camera;
   camera.model = CameraModel::kWeakPerspective;
@@ -48,7 +49,8 @@ bool IsVibe(const PickleValue& file) {
 
 BodyEstimate VibeFromPickle(const PickleValue& file, const std::string& where, int image_width, int image_height) {
   if (image_width <= 0 || image_height <= 0) {
-    Refuse(where, "VIBE: its camera is in units of the image size, which is not known; give --video or --image-size");
+    ThrowFileError(where,
+                   "VIBE: its camera is in units of the image size, which is not known; give --video or --image-size");
   }
   return SmplPeople(
       file, where, "VIBE", [&](const PickleValue& values, const std::string& place, PersonEstimate* person) {
@@ -68,7 +70,8 @@ bool IsWham(const PickleValue& file) {
 
 BodyEstimate WhamFromPickle(const PickleValue& file, const std::string& where, int image_width, int image_height) {
   if (image_width <= 0 || image_height <= 0) {
-    Refuse(where, "WHAM: its camera follows from the image size, which is not known; give --video or --image-size");
+    ThrowFileError(where,
+                   "WHAM: its camera follows from the image size, which is not known; give --video or --image-size");
   }
   const Camera camera = CentredCamera(image_width, image_height, std::hypot(image_width, image_height));
   return SmplPeople(
@@ -82,13 +85,13 @@ namespace {
 
 const NdArray& RequireTensor(const WeightsFile& file, const std::string& key, const std::string& where) {
   const auto found = file.tensors.find(key);
-  if (found == file.tensors.end()) Refuse(where, "GVHMR: no tensor '" + key + "'");
+  if (found == file.tensors.end()) ThrowFileError(where, "GVHMR: no tensor '" + key + "'");
   return found->second;
 }
 
 Camera CameraFromK(const Eigen::Ref<const Eigen::RowVectorXd>& k, const std::string& where, Eigen::Index row) {
   if (!(k[0] > 0) || !(k[4] > 0) || k[8] != 1 || k[1] != 0 || k[3] != 0) {
-    Refuse(where, "K_fullimg", Concatenate("frame ", row, ": expected [fx 0 cx; 0 fy cy; 0 0 1]"));
+    ThrowFileError(where, "K_fullimg", Concatenate("frame ", row, ": expected [fx 0 cx; 0 fy cy; 0 0 1]"));
   }
   Camera camera;
   camera.fx = k[0];
@@ -117,7 +120,7 @@ BodyEstimate GvhmrFromTensors(const WeightsFile& file, const std::string& where)
   };
   const RowMatrixXd body = matrix("smpl_params_incam.body_pose", {-1, 63});
   const int64_t n = body.rows();
-  if (n >= kMostEstimateFrames) Refuse(where, "smpl_params_incam.body_pose", "too many frames");
+  if (n >= kMaxEstimateFrames) ThrowFileError(where, "smpl_params_incam.body_pose", "too many frames");
   person.poses.setZero(n, 72);
   person.poses.leftCols<3>() = matrix("smpl_params_incam.global_orient", {n, 3});
   person.poses.middleCols<63>(3) = body;

@@ -39,30 +39,31 @@ bool LooksLikePickle(std::string_view bytes) {
 BodyEstimate EstimateFromBytes(const std::string& bytes, const std::string& where, const LoadEstimateOptions& options) {
   const int width = options.image_width, height = options.image_height;
   BODYLOOM_CHECK(width >= 0 && height >= 0, "image size ", width, "x", height, " must not be negative");
-  if (bytes.empty()) Refuse(where, std::string("the file is empty; ") + kExpectedEstimate);
+  if (bytes.empty()) ThrowFileError(where, std::string("the file is empty; ") + kExpectedEstimate);
   if (IsTorchArchive(bytes)) {
     const WeightsFile file = TorchWeightsFromBytes(bytes, where);
     if (IsGvhmr(file)) return GvhmrFromTensors(file, where);
-    Refuse(where, std::string("a file of torch.save without 'smpl_params_incam'; ") + kExpectedEstimate);
+    ThrowFileError(where, std::string("a file of torch.save without 'smpl_params_incam'; ") + kExpectedEstimate);
   }
   if (LooksLikeZip(bytes)) {
     const NpzArrays arrays = ReadNpzBytes(bytes, where);
     if (IsSam3dBody(arrays)) return Sam3dBodyFromNpz(arrays, where);
-    if (!IsAmass(arrays)) Refuse(where, std::string("an .npz without 'poses' and 'trans'; ") + kExpectedEstimate);
+    if (!IsAmass(arrays))
+      ThrowFileError(where, std::string("an .npz without 'poses' and 'trans'; ") + kExpectedEstimate);
     if (arrays.count("K") == 0 && arrays.count("camera") == 0) {
-      Refuse(where, std::string("poses in a world frame, expected the camera's; ") + kExpectedEstimate);
+      ThrowFileError(where, std::string("poses in a world frame, expected the camera's; ") + kExpectedEstimate);
     }
     return EstimateFromTrack(TrackFromArrays(arrays, where), where);
   }
-  if (!LooksLikePickle(bytes)) Refuse(where, std::string("unknown kind of file; ") + kExpectedEstimate);
+  if (!LooksLikePickle(bytes)) ThrowFileError(where, std::string("unknown kind of file; ") + kExpectedEstimate);
   const PicklePtr file = ReadPickle(bytes, where);
   if (IsVibe(*file)) return VibeFromPickle(*file, where, width, height);
   if (IsWham(*file)) return WhamFromPickle(*file, where, width, height);
   if (IsPhalp(*file)) return PhalpFromPickle(*file, where, width, height);
-  Refuse(where, std::string(file->kind == PickleValue::Kind::kDict && file->dict.empty()
-                                ? "a pickle of an empty dictionary: nobody was found; "
-                                : "a pickle that holds no known poses; ") +
-                    kExpectedEstimate);
+  ThrowFileError(where, std::string(file->kind == PickleValue::Kind::kDict && file->dict.empty()
+                                        ? "a pickle of an empty dictionary: nobody was found; "
+                                        : "a pickle that holds no known poses; ") +
+                            kExpectedEstimate);
 }
 
 BodyEstimate LoadEstimate(const std::string& path, const LoadEstimateOptions& options) {
@@ -76,7 +77,8 @@ BodyEstimate EstimateFromTrack(const Track& track, const std::string& where) {
   const Motion& motion = track.motion;
   const Eigen::Index columns = motion.poses.cols();
   if (columns != kSmpl && columns != 156 && columns != 162 && columns != 165) {
-    Refuse(where, "poses", Concatenate(columns, " columns, expected 72 (SMPL), 156 (SMPL-H), 162 or 165 (SMPL-X)"));
+    ThrowFileError(where, "poses",
+                   Concatenate(columns, " columns, expected 72 (SMPL), 156 (SMPL-H), 162 or 165 (SMPL-X)"));
   }
   BodyEstimate estimate;
   estimate.system = "track";

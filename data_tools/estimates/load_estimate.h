@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Loads what another system made of a video, of any form: recognises the file by content.
+/// Loads body estimates of other systems in any supported format, recognised by content.
 ///
 /// Read: WHAM's, VIBE's and PHALP's or 4D-Humans' joblib pickles, GVHMR's hmr4d_results.pt, SAM 3D Body's .npz or a
-/// folder of them, and tracks of this project's form (motion/track_io.h). Nothing in them is run.
+/// folder of them, and tracks of this project's form (motion/track_io.h). No code in them is run.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 namespace bodyloom {
 
 struct LoadEstimateOptions {
-  int image_width = 0, image_height = 0;  ///< of the video, as far as known; WHAM and VIBE need it
+  int image_width = 0, image_height = 0;  ///< of the video, 0 if unknown; WHAM and VIBE need it
 };
 
 /// Throws std::runtime_error in one line: what was found and what was expected; std::invalid_argument for an image size
@@ -23,11 +23,11 @@ BodyEstimate LoadEstimate(const std::string& path, const LoadEstimateOptions& op
 BodyEstimate EstimateFromBytes(const std::string& bytes, const std::string& where,
                                const LoadEstimateOptions& options = {});
 
-// A track as an estimate: of another camera model, of a fit that is to be continued, or written by another program.
+// Tracks as estimates: of another camera model, of a fit to be continued, or written by another program.
 
-/// Frames without a result are missing. Of bodies with hands and a face SMPL's 21 body joints are taken. `where` names
-/// the track in messages; throws std::runtime_error when no frame has a result or the poses have neither 72 nor 156,
-/// 162 or 165 columns.
+/// Frames without a result are missing. For bodies with hands and a face, only SMPL's 21 body joints are used. `where`
+/// names the track in messages; throws std::runtime_error when no frame has a result or the poses have neither 72 nor
+/// 156, 162 or 165 columns.
 BodyEstimate EstimateFromTrack(const Track& track, const std::string& where);
 
 }  // namespace bodyloom

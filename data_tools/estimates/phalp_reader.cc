@@ -29,18 +29,18 @@ void AppendNumbers(const PickleValue& value, const std::string& place, const std
   } else if (value.kind == Kind::kList || value.kind == Kind::kTuple) {
     for (const PicklePtr& item : value.items) AppendNumbers(*item, place, key, numbers);
   } else {
-    Refuse(place, key, "expected numbers");
+    ThrowFileError(place, key, "expected numbers");
   }
 }
 
 Eigen::RowVectorXd RequireCount(const PickleValue* value, size_t count, const std::string& place,
                                 const std::string& key) {
-  if (value == nullptr) Refuse(place, key, "is not there");
+  if (value == nullptr) ThrowFileError(place, key, "is not there");
   std::vector<double> numbers;
   AppendNumbers(*value, place, key, &numbers);
   if (numbers.size() != count ||
       !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) {
-    Refuse(place, key, Concatenate(numbers.size(), " numbers, expected ", count, " finite ones"));
+    ThrowFileError(place, key, Concatenate(numbers.size(), " numbers, expected ", count, " finite ones"));
   }
   return Eigen::Map<const Eigen::RowVectorXd>(numbers.data(), static_cast<Eigen::Index>(count));
 }
@@ -49,17 +49,17 @@ const std::vector<PicklePtr>& RequireList(const PickleValue& frame, const std::s
                                           const std::string& place) {
   const PickleValue* value = frame.Find(key);
   if (value == nullptr || (value->kind != Kind::kList && value->kind != Kind::kTuple)) {
-    Refuse(place, key, "expected a list of one entry a track");
+    ThrowFileError(place, key, "expected a list of one entry a track");
   }
   if (value->items.size() < at_least) {
-    Refuse(place, key, Concatenate(value->items.size(), " entries, expected those of ", at_least, " tracks"));
+    ThrowFileError(place, key, Concatenate(value->items.size(), " entries, expected those of ", at_least, " tracks"));
   }
   return value->items;
 }
 
 int64_t WholeNumber(const PickleValue* value, const std::string& place, const std::string& key) {
   const double number = RequireCount(value, 1, place, key)[0];
-  if (number != std::floor(number) || std::abs(number) > 1e9) Refuse(place, key, "expected a whole number");
+  if (number != std::floor(number) || std::abs(number) > 1e9) ThrowFileError(place, key, "expected a whole number");
   return static_cast<int64_t>(number);
 }
 
@@ -115,7 +115,7 @@ BodyEstimate PhalpFromPickle(const PickleValue& file, const std::string& where, 
   for (const auto& [name, frame] : file.dict) {
     const std::string place = where + ": frame " + PrintableText(name);
     const int64_t number = WholeNumber(frame->Find("time"), place, "time");
-    if (number < 0 || number >= kMostEstimateFrames) Refuse(place, "time", "expected the number of a frame");
+    if (number < 0 || number >= kMaxEstimateFrames) ThrowFileError(place, "time", "expected the number of a frame");
     const std::vector<PicklePtr>& ids = RequireList(*frame, "tid", 0, place);
     const std::vector<PicklePtr>& ages = RequireList(*frame, "tracked_time", ids.size(), place);
     const std::vector<PicklePtr>& bodies = RequireList(*frame, "smpl", ids.size(), place);
@@ -127,12 +127,13 @@ BodyEstimate PhalpFromPickle(const PickleValue& file, const std::string& where, 
       if (has_size) {
         const Eigen::RowVectorXd size =
             RequireCount(RequireList(*frame, "size", ids.size(), place)[i].get(), 2, place, "size");
-        if (!(size.minCoeff() >= 1) || size.maxCoeff() > 1e6) Refuse(place, "size", "expected height and width");
+        if (!(size.minCoeff() >= 1) || size.maxCoeff() > 1e6)
+          ThrowFileError(place, "size", "expected height and width");
         height = static_cast<int>(size[0]);
         width = static_cast<int>(size[1]);
       }
       if (width <= 0 || height <= 0) {
-        Refuse(place, "size", "is not there, and the image size is not known; give --video or --image-size");
+        ThrowFileError(place, "size", "is not there, and the image size is not known; give --video or --image-size");
       }
       OpenPerson& person = people[WholeNumber(ids[i].get(), place, "tid")];
       person.frames.push_back(static_cast<int>(number));

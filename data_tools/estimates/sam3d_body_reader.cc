@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::array<int, 21> kMhrOfLandmark = {0, 1,  2,  3,  4,  5,  6,  7,  8,  62, 41,
                                                 9, 10, 11, 12, 13, 14, 15, 18, 17, 20};
 constexpr int kLeftHip = 11;
-constexpr double kMostResidual_px = 1;
+constexpr double kMaxResidual_px = 1;
 
 /// x = f X/Z + cx, y = f Y/Z + cy by least squares.
 Camera CameraOf(const RowMatrixXd& points, const RowMatrixXd& pixels, const std::string& where) {
@@ -32,7 +32,7 @@ Camera CameraOf(const RowMatrixXd& points, const RowMatrixXd& pixels, const std:
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 3);
   Eigen::VectorXd b(2 * n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    if (!(points(k, 2) > Camera::kMinDepth)) Refuse(where, "pred_cam_t", "a landmark behind the camera");
+    if (!(points(k, 2) > Camera::kMinDepth)) ThrowFileError(where, "pred_cam_t", "a landmark behind the camera");
     for (int c = 0; c < 2; ++c) {
       A(2 * k + c, 0) = points(k, c) / points(k, 2);
       A(2 * k + c, 1 + c) = 1;
@@ -41,11 +41,11 @@ Camera CameraOf(const RowMatrixXd& points, const RowMatrixXd& pixels, const std:
   }
   const Eigen::VectorXd solution = A.colPivHouseholderQr().solve(b);
   const double worst = (A * solution - b).cwiseAbs().maxCoeff();
-  if (!solution.allFinite() || !(solution[0] > 0) || !(worst < kMostResidual_px)) {
-    Refuse(where, "pred_keypoints_2d",
-           Concatenate("is up to ", worst,
-                       " px off a projection of pred_keypoints_3d + pred_cam_t, expected the same "
-                       "person in one pinhole camera"));
+  if (!solution.allFinite() || !(solution[0] > 0) || !(worst < kMaxResidual_px)) {
+    ThrowFileError(where, "pred_keypoints_2d",
+                   Concatenate("is up to ", worst,
+                               " px off a projection of pred_keypoints_3d + pred_cam_t, expected the same "
+                               "person in one pinhole camera"));
   }
   Camera camera;
   camera.fx = camera.fy = solution[0];
@@ -112,7 +112,7 @@ BodyEstimate ReadSam3dBodyFolder(const std::string& folder) {
       stem = std::string(match.prefix());
     }
     const int64_t frame = FrameNumberFromName(stem);
-    if (frame >= kMostEstimateFrames) Refuse(path, "the number of its frame is too large");
+    if (frame >= kMaxEstimateFrames) ThrowFileError(path, "the number of its frame is too large");
     people[person].name = person;
     Append(arrays, path, static_cast<int>(std::max<int64_t>(frame, 0)), &people[person]);
   }

@@ -37,7 +37,7 @@ void AddPublishedMotion(const Track& track, const MultiViewClip& clip, const std
   const VertexErrorOptions options;
   const VertexErrors errors = CompareVertices(track, source, truth.track, body, options);
   AddProjectionError(errors.projection, options.image_side_px, result);
-  // Published translations are in the template's size, the track's in its own: lengths do not compare.
+  // Published translations are in the template's size, the track's in its own: lengths are not comparable.
   if (!smpl) {
     result->Add("pve_mm", errors.position.mean * kMmPerMetre, "vertex error, pelvis aligned");
   }
@@ -99,11 +99,11 @@ Evaluation EvaluateAist(const Track& track, const std::string& annotations_folde
 namespace {
 
 constexpr double kLandmarkSigma_m = 0.02;
-constexpr int kShapeFrames = 60;  // spread over the clip: more say the same about a shape
+constexpr int kShapeFrames = 60;  // spread over the clip: more add nothing about the shape
 
 MatrixX3d Centred(const MatrixX3d& points) { return points.rowwise() - points.colwise().mean(); }
 
-/// Frame t's pose in the camera frame, at the place where the body's own origin is its root's turning point.
+/// Frame t's pose in the camera frame, translated for a body whose root rotates about the origin.
 BodyPose InCamera(const BodyModel& body, const Motion& motion, int t, const CameraPose& camera) {
   BodyPose pose = PoseFromAxisAngle(body, motion.poses.row(t).transpose(), Eigen::Vector3d::Zero());
   pose.rotations[0] = camera.camera_from_world_rotation * pose.rotations[0];
@@ -149,7 +149,7 @@ PseudoTruth MakePseudoTruth(const MultiViewClip& clip, const RigView& view, cons
                             PseudoTruthShape shape) {
   const int T = std::min(clip.motion.num_frames(), static_cast<int>(clip.coco17_in_world.size()));
   BODYLOOM_CHECK(T > 0, "MakePseudoTruth: the clip '", clip.name, "' has no motion");
-  // As published the unit of length is the body's: the same pixels come from a camera as much nearer.
+  // As published the unit of length is the body's, so the camera is nearer by the same factor.
   const bool published = shape == PseudoTruthShape::kAsPublished;
   const double unit = published ? clip.motion_scale : 1;
   std::vector<BodyPose> poses(T);
@@ -170,7 +170,7 @@ PseudoTruth MakePseudoTruth(const MultiViewClip& clip, const RigView& view, cons
   for (int t = 0; t < T; ++t) {
     const MatrixX3d here = Cocos(body, motion.betas, poses[t]);
     if (published) {
-      // Where the root joint is in the world, seen from the camera.
+      // Position of the root joint in the world, in camera coordinates.
       const Eigen::Vector3d root = pelvis + clip.motion.trans.row(t).transpose();
       poses[t].trans =
           view.pose.camera_from_world_rotation * root + view.pose.camera_from_world_translation / unit - pelvis;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The result of an evaluation: the protocol in words, named numbers, and their breakdown by joint or camera.
+/// Result of an evaluation: description of the protocol, named numbers, and their breakdown by joint or camera.
 #pragma once
 
 #include <span>
@@ -11,15 +11,15 @@
 
 namespace bodyloom {
 
-/// One number. The name ends in its unit (`pa_mpjpe_mm`, `heldout_median_px`) and is the key in JSON; NaN means that
-/// there was nothing to measure.
+/// One number. The name ends in its unit (`pa_mpjpe_mm`, `heldout_median_px`) and is the key in JSON; NaN if there was
+/// nothing to measure.
 struct EvaluationValue {
   std::string name;
   double value = 0;
   std::string meaning;  ///< one line
 };
 
-/// One number a joint or camera.
+/// One number per joint or camera.
 struct EvaluationBreakdown {
   std::string name;  ///< with its unit
   std::vector<std::string> labels;
@@ -27,10 +27,10 @@ struct EvaluationBreakdown {
 };
 
 struct Evaluation {
-  std::string protocol;     ///< short name, "aist-held-out"
-  std::string description;  ///< what is compared with what, after which alignment, over which frames
+  std::string protocol;                                      ///< short name, "aist-held-out"
+  std::string description;                                   ///< quantities compared, alignment and frames
   std::vector<std::pair<std::string, std::string>> subject;  ///< sequence, view, …
-  int frames = 0;                                            ///< compared
+  int frames = 0;                                            ///< frames compared
   int frames_without_result = 0;                             ///< of these, scored with the nearest frame that has one
   std::vector<EvaluationValue> values;
   std::vector<EvaluationBreakdown> breakdowns;
@@ -38,7 +38,7 @@ struct Evaluation {
   void Add(std::string name, double value, std::string meaning) {
     values.push_back({std::move(name), value, std::move(meaning)});
   }
-  /// The value called `name`; throws std::invalid_argument when there is none.
+  /// The value called `name`; throws std::invalid_argument if there is none.
   [[nodiscard]] double Value(const std::string& name) const;
 };
 
@@ -49,8 +49,6 @@ std::string EvaluationTable(const Evaluation& evaluation);
 /// meanings {name: text}, breakdowns {name: {label: number or null}}. Ends with a newline.
 std::string EvaluationJson(const Evaluation& evaluation);
 
-// How bent the knees of a motion are.
-
 /// Median of the knees' flexion over the frames with a pose and both knees, degrees. Flexion is the x component of a
 /// knee's axis-angle (SMPL's joints 4 and 5; tracking/terms/joint_limits.h has the frame): 0 where thigh and shin are
 /// in line as in the rest pose. NaN without such frames, and for poses of fewer than six joints.
@@ -59,7 +57,7 @@ double MedianKneeFlexionDeg(const Motion& motion);
 /// Adds `knee_flexion_deg`, and with a truth `gt_knee_flexion_deg`.
 void AddKneeFlexion(const Motion& estimate, const Motion* truth, Evaluation* evaluation);
 
-/// Protocol "track-alone", where nothing is known to compare with: the knees' flexion.
+/// Protocol "track-alone", without a reference: the knees' flexion.
 Evaluation EvaluateAlone(const Track& track);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A track made from one camera, judged by what the other cameras saw.
+/// Evaluates a track fitted to one camera against the detections in the other cameras of a rig.
 #pragma once
 
 #include <string>
@@ -21,23 +21,23 @@ struct RigView {
   KeypointSequence detections;  ///< CocoNames() in order
 };
 
-/// A clip seen by several calibrated cameras, with the joints that all of them together gave.
+/// A clip recorded by several calibrated cameras, with the joints determined from all of them.
 struct MultiViewClip {
   std::string name;
   std::vector<RigView> views;
-  std::vector<MatrixX3d> coco17_in_world;  ///< T of 17×3 metres; NaN where not known
-  Motion motion;                           ///< T SMPL poses in the world frame; num_frames() = 0 when there are none
-  double motion_scale = 1;  ///< metres of the world a metre of the motion's body (its shape is the template's)
-  double fps = 0;           ///< nominal: positions are differenced with it, not with rounded timestamps
+  std::vector<MatrixX3d> coco17_in_world;                 ///< T of 17×3 metres; NaN where unknown
+  Motion motion;            ///< T SMPL poses in the world frame; num_frames() = 0 when there are none
+  double motion_scale = 1;  ///< metres of the world per metre of the motion's body (its shape is the template's)
+  double fps = 0;           ///< nominal; used to difference positions instead of rounded timestamps
 };
 
 struct EvaluateHeldOutViewsOptions {
-  double min_confidence = 0.3;  ///< detections above this count
+  double min_confidence = 0.3;  ///< detections above this are used
 };
 
 /// Protocol "held-out views". The track (camera frame of the view it was fitted to, coco17 in metres) and the clip are
 /// matched by frame index over the frames both have. With P the track's landmarks, G the clip's in the camera frame of
-/// the fitted view, and hip(·) the middle of COCO's hips:
+/// the fitted view, and hip(·) the mid-hip of COCO's hips:
 ///   clip_scale         s = argmin Σ ‖s (P − hip P) − (G − hip G)‖²
 ///   mpjpe_mm, mpjpe_scaled_mm   mean ‖(P − hip P) − (G − hip G)‖, and with s
 ///   pa_mpjpe_mm, pa_p95_mm, pa_over_120_percent   after one similarity a frame (geometry/math/procrustes.h)

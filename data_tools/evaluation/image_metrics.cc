@@ -17,11 +17,11 @@ void RequireMask(int width, int height, const PixelMask* mask) {
   if (mask == nullptr) return;
   BODYLOOM_CHECK(
       mask->width == width && mask->height == height && mask->inside.size() == static_cast<size_t>(width) * height,
-      "a mask of ", mask->width, "x", mask->height, " for a picture of ", width, "x", height);
+      "a mask of ", mask->width, "x", mask->height, " for an image of ", width, "x", height);
 }
 
-template <typename Picture>
-void RequireSameSize(const Picture& truth, const Picture& result) {
+template <typename Pixels>
+void RequireSameSize(const Pixels& truth, const Pixels& result) {
   BODYLOOM_CHECK(truth.width == result.width && truth.height == result.height, "the truth has ", truth.width, "x",
                  truth.height, " pixels, the result ", result.width, "x", result.height);
 }

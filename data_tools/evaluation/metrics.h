@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Errors of an estimated motion against the true one: positions, motion over time, joint angles. Metres and seconds
-/// in. Errors in pixels are in data_tools/evaluation/metrics_image.h; protocols that read files in
-/// data_tools/evaluation/.
+/// Errors of an estimated motion against the true one: positions, motion over time, joint angles. Inputs in metres and
+/// seconds. Errors in pixels: data_tools/evaluation/metrics_image.h.
 ///
-/// Shapes: a clip is T frames of P points (P×3), prediction and truth alike; anything else throws
-/// std::invalid_argument.
+/// Shapes: a clip is T frames of P points (P×3), the same for prediction and truth; otherwise std::invalid_argument.
 /// Missing values: a point with a non-finite coordinate on either side is left out of every mean and counted in
-/// `missing`. A protocol that must not reward leaving out first fills such frames (NearestFramesWithResult).
-/// Definitions as in the evaluation code of WHAM, TRAM and GVHMR where they agree; deviations are stated.
+/// `missing`. Protocols that must not reward missing frames fill them first (NearestFramesWithResult). Definitions as
+/// in the evaluation code of WHAM, TRAM and GVHMR where they agree; deviations are stated.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +22,7 @@ namespace bodyloom {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Distribution of a set of errors; NaN where there was nothing to measure.
+/// Distribution of a set of errors; NaN if there was nothing to measure.
 struct ErrorStatistics {
   double mean = kNotMeasured;
   double std_dev = kNotMeasured;  ///< of the population: √(mean of squares − square of mean)
@@ -34,45 +32,45 @@ struct ErrorStatistics {
 };
 ErrorStatistics Summarize(std::span<const double> values);
 
-/// Percent of the finite values that are above `limit`; NaN when none is finite.
+/// Percentage of the finite values that are above `limit`; NaN if none is finite.
 double PercentAbove(std::span<const double> values, double limit);
 
-/// A frame whose landmarks are off by more than this after one similarity shows another pose: a limb that is turned the
-/// other way, front and back exchanged.
+/// Error of a frame's landmarks after a similarity transform above which it shows another pose, such as a limb turned
+/// the other way or front and back exchanged.
 inline constexpr double kAnotherPose_m = 0.12;
 
-/// Which of the first `frames` frames have a result; the track has as many.
+/// True for each of the first `frames` frames of the track that has a result; the track has at least as many.
 std::vector<bool> HasResults(const Track& track, int frames);
 
-/// For every frame the nearest frame that has a result, the earlier one in a tie; empty when none has.
-/// Scoring frame t with frame result[t] makes leaving out frames cost what standing still would.
+/// For every frame the nearest frame that has a result, the earlier one in a tie; empty if none has.
+/// Scoring frame t with frame result[t] makes a missing frame cost as much as standing still.
 std::vector<int> NearestFramesWithResult(const std::vector<bool>& has_result);
 
 // ---- positions ------------------------------------------------------------------------------------------------------
 
 using Clip = std::span<const MatrixX3d>;
 
-/// T×3: mean of the points `root` of each frame (NaN when one of them is not finite). {0} is SMPL's pelvis, {1, 2} the
+/// T×3: mean of the points `root` of each frame (NaN if one of them is not finite). {0} is SMPL's pelvis, {1, 2} the
 /// middle of SMPL's hips, {11, 12} the middle of COCO's.
 MatrixX3d RootPositions(Clip points, const std::vector<int>& root);
 
 /// points_t − roots_t, row by row. roots is T×3.
 std::vector<MatrixX3d> RelativeTo(Clip points, const MatrixX3d& roots);
 
-/// The one scale of a clip: argmin_s Σ_{t,p} ‖s·prediction − truth‖² = Σ ⟨prediction, truth⟩ / Σ ‖prediction‖², both
-/// relative to their roots. A single camera cannot see it. NaN when the prediction is all zero or missing.
+/// The global scale of a clip: argmin_s Σ_{t,p} ‖s·prediction − truth‖² = Σ ⟨prediction, truth⟩ / Σ ‖prediction‖², both
+/// relative to their roots. It is not observable with a single camera. NaN if the prediction is all zero or missing.
 double ClipScale(Clip prediction_from_root, Clip truth_from_root);
 
 /// Distances between corresponding points, metres.
 struct PositionError {
   double mean = kNotMeasured;    ///< over all frames and points
-  ErrorStatistics frames;        ///< distribution of the frames' means (its p95 is a bad frame)
-  std::vector<double> of_frame;  ///< T: those means; NaN where nothing was known
+  ErrorStatistics frames;        ///< distribution of the frames' means
+  std::vector<double> of_frame;  ///< T: those means; NaN where all points are missing
   Eigen::VectorXd per_point;     ///< P: mean over frames of each point
   int64_t count = 0, missing = 0;
 };
 
-/// Gathers a PositionError frame by frame, for clips too large to hold (all vertices of long clips).
+/// Gathers a PositionError frame by frame, for clips too large for memory (all vertices of long clips).
 class PositionErrorAccumulator {
  public:
   /// Distances of one frame's P points, metres; a non-finite one is missing.
@@ -97,7 +95,8 @@ PositionError MeanPositionError(Clip prediction, Clip truth, double scale = 1);
 /// A frame whose alignment has no points is missing.
 PositionError ProcrustesPositionError(Clip prediction, Clip truth);
 
-/// Where the root is, T×3 metres in the camera frame. Depth is what a single camera knows least, so it is kept apart.
+/// Error of root positions, T×3 metres in the camera frame. Depth, the least certain coordinate with a single camera,
+/// is reported separately.
 struct RootError {
   ErrorStatistics distance;       ///< ‖prediction − truth‖
   double lateral = kNotMeasured;  ///< mean distance in the image plane's directions (x, y)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Image errors of an estimated motion: its distance from what a camera saw, in pixels. Metric errors are in
+/// Image errors of an estimated motion: distances from detections and true projections in pixels. Metric errors:
 /// data_tools/evaluation/metrics.h.
 ///
-/// Shapes: T frames of K×2 pixels. A point that has no projection is a row of NaN; it is left out of distances and
+/// Shapes: T frames of K×2 pixels. A point without a projection is a row of NaN; it is left out of distances and
 /// counted in `missing`, and it counts as wrong in PCK.
 #pragma once
 
@@ -22,16 +22,16 @@ using PixelClip = std::span<const MatrixX2d>;
 MatrixX2d ProjectPoints(const Camera& camera, const MatrixX3d& points_in_camera);
 
 /// Factor that brings pixels of a width×height image to the scale of a side×side one into which the whole image was
-/// fitted: side / max(width, height). Papers that report pixels "for images of size 512×512" rarely say how the image
-/// was brought there; this project always scales by the longer side.
+/// fitted: side / max(width, height). Papers that report pixels "for images of size 512×512" rarely state how the image
+/// was resized; this project always scales by the longer side.
 double SquareImageScale(int width, int height, int side = 512);
 
 /// Per-vertex projection error of paper A, Table 4: distance between the projected vertices of the estimated and of the
 /// true body, each through its own camera, in pixels of a side×side image:
 ///   e_tv = ‖π(v̂_tv) − π(v_tv)‖ · side / max(width, height).
 /// Source: "Learning Motion-Dependent Appearance for High-Fidelity Rendering of Dynamic Humans from a Single Camera",
-/// appendix A. The table's "mean ± std" does not name the population; the spread over frames' means is the one that
-/// matches its magnitude (±10–30 % of the mean), the spread over vertices is given too.
+/// appendix A. The table's "mean ± std" does not name the population; the spread over frames' means matches its
+/// magnitude (±10–30 % of the mean); the spread over vertices is given too.
 struct ProjectionError {
   double mean_px = kNotMeasured;          ///< over all frames and vertices
   double std_frames_px = kNotMeasured;    ///< spread of the frames' means
@@ -68,11 +68,11 @@ struct ReprojectionErrors {
 void AddReprojectionErrors(PixelClip prediction_px, const KeypointSequence& detections, double min_confidence,
                            ReprojectionErrors* errors);
 
-/// Longer side of the box around the detections of a frame with confidence above min_confidence: the person's height
-/// in pixels when it stands, and as good a measure of size when it does not. NaN with fewer than five detections.
+/// Longer side of the box around the detections of a frame with confidence above min_confidence: the height in pixels
+/// of a standing person, and a comparable measure of size in other poses. NaN with fewer than five detections.
 double DetectionBoxSidePx(const KeypointSequence& detections, int frame, double min_confidence);
 
-/// What a PCK threshold is a fraction of.
+/// Reference length of a PCK threshold.
 enum class PckReference {
   kBox,    ///< longer side of the box around the frame's detections (DetectionBoxSidePx); PCK@0.05, PCK@0.1
   kTorso,  ///< distance from left shoulder to right hip (or right shoulder to left hip when one is missing); PCK@0.2

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How much like another motion a motion is: normalised cross-correlation of descriptors of their frames.
+/// Similarity of motions: normalised cross-correlation of the descriptors of their frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace bodyloom {
 
-/// A row a frame.
+/// One row per frame.
 using DescriptorRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The 3D motion descriptor, 3 + 3·past channels over the atlas; with past 0 only its normals. Throws
@@ -26,9 +26,9 @@ Eigen::MatrixXf NormalisedCrossCorrelation(const DescriptorRows& a, const Descri
 
 /// Similarity of each frame's motion to those of other frames: the largest normalised cross-correlation, in [−1, 1], of
 /// its motion descriptor (normals and the velocities of `past` frames over an atlas of 32², in the axes of `motion`)
-/// with that of any frame of `others`, which may be the same track (then 1). `counts` has an entry a frame of `others`,
-/// 0 for those that are only there for the velocities of their neighbours; empty: all count. NaN for a frame without a
-/// result, and where no frame of `others` counts. Yoon et al., CVPR 2022, Fig. 6.
+/// with that of any frame of `others`, which may be the same track (then 1). `counts` has an entry per frame of
+/// `others`, 0 for those that only serve the velocities of their neighbours; empty: all count. NaN for a frame without
+/// a result, and if no frame of `others` counts. Yoon et al., CVPR 2022, Fig. 6.
 /// Memory: 4 · 1024 · (3 + 3 past) bytes a frame of both. Throws as PersonFrames, and std::invalid_argument for another
 /// number of `counts`.
 std::vector<float> SimilarityToNearest(const BodyModel& body, const Track& track, const Track& others, int past,

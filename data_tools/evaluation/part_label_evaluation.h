@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A track against part labels of the same video: how well the rendered body covers the person, and each part itself.
+/// Evaluates a track against part labels of the same video: overlap of the rendered body with the person, and of each
+/// part.
 #pragma once
 
 #include "data_tools/evaluation/evaluation.h"
@@ -10,7 +11,7 @@
 namespace bodyloom {
 
 struct EvaluatePartLabelsOptions {
-  int min_pixels = 400;  ///< a part counts in a frame when its label has at least as many pixels
+  int min_pixels = 400;  ///< a part is scored in a frame if its label has at least as many pixels
 };
 
 /// Protocol "part-labels". The body of every frame is rendered (visibility buffer, back faces culled) and each pixel

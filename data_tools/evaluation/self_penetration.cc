@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "data_tools/evaluation/closed_part.h"
+#include "data_tools/evaluation/capped_mesh.h"
 #include "data_tools/evaluation/metrics.h"
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
@@ -31,7 +31,7 @@ std::string PartBegunBy(const std::string& joint) {
   return limb == limbs.end() ? "" : joint.substr(0, 2) + limb->second;
 }
 
-/// The parts' solids of one body, and which vertices are tested against which part.
+/// The solids of one body's parts, and the pairs of vertex and part to be tested.
 class PartsOfShape {
  public:
   PartsOfShape(const BodyModel& body, const Eigen::VectorXd& betas, const SelfPenetrationOptions& options)
@@ -62,7 +62,7 @@ class PartsOfShape {
     FramePenetration result;
     result.deepest_of_pair_m.assign(static_cast<size_t>(P) * P, 0.0);
     turned_.noalias() = vertices * GenericRotation().transpose();
-    for (ClosedPart& solid : solids_) solid.Place(turned_);
+    for (CappedMesh& solid : solids_) solid.Place(turned_);
     for (int v = 0; v < static_cast<int>(turned_.rows()); ++v) {
       const Eigen::Vector3d p = turned_.row(v).transpose();
       double depth = 0;
@@ -120,7 +120,7 @@ class PartsOfShape {
 
   BodyParts parts_;
   std::vector<int> part_of_vertex_;
-  std::vector<ClosedPart> solids_;
+  std::vector<CappedMesh> solids_;
   std::vector<uint8_t> tested_;  // V × parts
   MatrixX3d turned_;
 };

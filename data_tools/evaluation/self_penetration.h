@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How deep the parts of a posed body lie in each other: a forearm in the trunk, a hand in a thigh.
+/// Self-penetration of a posed body: depth of its parts in each other, for example of a forearm in the trunk.
 ///
 /// Parts. On bodies with SMPL's joints: trunk (pelvis, spine, collars), head (neck, jaw, eyes), and on each side upper
-/// arm, forearm, hand (fingers), thigh, shank, foot. Other bodies: one part a joint. A vertex belongs to the part that
-/// has most of its skinning weight, a face to the part of most of its corners. Each part is a solid of its own
-/// (closed_part.h).
+/// arm, forearm, hand (fingers), thigh, shank, foot. Other bodies: one part per joint. A vertex belongs to the part
+/// with most of its skinning weight, a face to the part of most of its corners. Each part is a solid (capped_mesh.h).
 ///
-/// A vertex penetrates when it lies inside another part's solid, and its depth is the distance to that part's skin: how
-/// far it would have to go to be outside. Flesh of neighbours, and what lies close at rest, is no fault. In the rest
-/// pose of the track's own shape, the vertex is compared with every vertex of the part; where the nearest is
-/// closer than
+/// A vertex penetrates if it lies inside another part's solid, and its depth is the distance to that part's skin.
+/// Contact of neighbouring parts, and of parts close to each other at rest, is excluded: in the rest pose of the
+/// track's own shape, the vertex is compared with every vertex of the part; where the nearest is closer than
 ///   9 % of the body's height, when the part is joined to the vertex's own (a joint of one is the parent of one of
 ///     the other): an upper arm may bend into the armpit and a shank against the thigh, not through them;
 ///   3 % of it otherwise: armpits, crotch, inner thighs, hands spread at rest
 /// the pair is never tested. Distances at rest are to vertices, not faces: coarse bodies exclude a little less.
 ///
-/// Bodies are rigid where people are soft: arms that rest on the trunk and deep squats press flesh by a centimetre or
-/// two in reality as well. Compare with the truth's figure, or with another track's, rather than with 0.
+/// Model surfaces do not deform on contact: in reality, too, arms that rest on the trunk and deep squats press flesh by
+/// a centimetre or two. Compare with the value of the truth or of another track, rather than with 0.
 #pragma once
 
 #include <string>
@@ -29,11 +27,11 @@
 namespace bodyloom {
 
 struct SelfPenetrationOptions {
-  double joined_share = 0.09, other_share = 0.03;  ///< of the body's height: what lies closer at rest is not tested
+  double joined_share = 0.09, other_share = 0.03;  ///< of the body's height: pairs closer at rest are not tested
   int num_threads = 1;                             ///< the result is the same
 };
 
-/// The part of each joint, and what the parts are called.
+/// The part of each joint, and the names of the parts.
 struct BodyParts {
   std::vector<std::string> names;
   std::vector<int> of_joint;
@@ -45,7 +43,7 @@ struct FramePenetration {
   double deepest_m = 0;                   ///< 0: nothing penetrates
   int vertices = 0;                       ///< inside another part
   int vertex = -1;                        ///< the deepest one, −1: none
-  int part = -1, in = -1;                 ///< its part, and the one that it lies in
+  int part = -1, in = -1;                 ///< its part, and the part in which it lies
   std::vector<double> deepest_of_pair_m;  ///< parts × parts, [part · parts + in]
 };
 
@@ -60,7 +58,7 @@ struct SelfPenetration {
 SelfPenetration MeasureSelfPenetration(const Motion& motion, const std::vector<int>& frames, const BodyModel& body,
                                        const SelfPenetrationOptions& options = {});
 
-/// Adds, of all frames measured (NaN: none):
+/// Adds, over all frames measured (NaN: none):
 ///   self_penetration_mm              mean of the deepest vertex's depth
 ///   self_penetration_p95_mm          95th percentile of it
 ///   self_penetration_frames_percent  share of the frames in which it is above 10 mm

@@ -14,7 +14,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kLeastErrorM = 1e-4;
+constexpr double kMinErrorM = 1e-4;
 constexpr int kFirstLimbPoint = 5, kCocoPoints = 17;
 
 /// "left_elbow" → "l_elbow".
@@ -22,7 +22,7 @@ std::string JointOfLandmark(const std::string& landmark) {
   return landmark.substr(0, 1) + landmark.substr(landmark.find('_'));
 }
 
-/// Nothing where the track states nothing of the joint.
+/// Adds nothing if the track has no σ of the joint.
 void AddPair(double error_m, const Track& track, int frame, Eigen::Index joint, std::vector<JudgedSigma>* pairs) {
   if (frame >= track.joint_sigma.rows() || joint >= track.joint_sigma.cols()) return;
   pairs->push_back({error_m, track.joint_sigma(frame, joint)});
@@ -40,7 +40,7 @@ double LogCorrelation(const std::vector<JudgedSigma>& pairs) {
   if (n < 2) return std::numeric_limits<double>::quiet_NaN();
   Eigen::ArrayXd e(n), s(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    e[i] = std::log(std::max(kLeastErrorM, pairs[i].error_m));
+    e[i] = std::log(std::max(kMinErrorM, pairs[i].error_m));
     s[i] = std::log(pairs[i].sigma_m);
   }
   e -= e.mean();

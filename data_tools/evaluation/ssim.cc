@@ -41,7 +41,7 @@ const PresetRow& RowOf(SsimPreset preset) {
   return *std::find_if(std::begin(kPresets), std::end(kPresets), [&](const auto& row) { return row.preset == preset; });
 }
 
-/// One channel of both pictures, read a piece of a row at a time.
+/// One channel of both images, read a piece of a row at a time.
 struct PlanePair {
   int width = 0, height = 0;
   /// Puts the n values from (x, y) on into a and b.
@@ -195,18 +195,18 @@ double PlaneSsim(const PlanePair& planes, const PresetRow& row, double range) {
   return GaussianMean(planes, constants);
 }
 
-/// `plane(channel, box)` gives both pictures' channel cut to a box.
+/// `plane(channel, box)` gives both images' channel cut to a box.
 template <typename Planes>
 double SsimOf(int width, int height, int channels, const PresetRow& row, double range, const PixelMask* mask,
               const Planes& plane) {
-  const int least = SsimMinimumSize(row.preset);
-  BODYLOOM_CHECK(channels > 0 && width >= least && height >= least, "SSIM preset ", row.name, ": pictures of ", width,
-                 "x", height, " and ", channels, " channels, expected at least ", least, "x", least, " and 1");
+  const int minimum = SsimMinimumSize(row.preset);
+  BODYLOOM_CHECK(channels > 0 && width >= minimum && height >= minimum, "SSIM preset ", row.name, ": images of ", width,
+                 "x", height, " and ", channels, " channels, expected at least ", minimum, "x", minimum, " and 1");
   Box box{0, 0, width, height};
   if (row.preset == SsimPreset::kNeuralBody && mask != nullptr) {
     BODYLOOM_CHECK(
         mask->width == width && mask->height == height && mask->inside.size() == static_cast<size_t>(width) * height,
-        "a mask of ", mask->width, "x", mask->height, " for a picture of ", width, "x", height);
+        "a mask of ", mask->width, "x", mask->height, " for an image of ", width, "x", height);
     box = BoxOf(*mask);
     if (box.width() < row.taps || box.height() < row.taps) return std::numeric_limits<double>::quiet_NaN();
   }
@@ -243,8 +243,8 @@ double Ssim(const PlanarImage& truth, const PlanarImage& result, SsimPreset pres
   const PresetRow& row = RowOf(preset);
   double range = row.range * white;
   if (preset == SsimPreset::kPatn && !result.values.empty()) {
-    const auto [least, most] = std::minmax_element(result.values.begin(), result.values.end());
-    range = *most - *least;
+    const auto [minimum, maximum] = std::minmax_element(result.values.begin(), result.values.end());
+    range = *maximum - *minimum;
   }
   return SsimOf(truth.width, truth.height, truth.channels, row, range, mask, [&](int channel, const Box& box) {
     const auto read = [&truth, &result, box, channel](int x, int y, int n, double* a, double* b) {
@@ -262,8 +262,8 @@ double Ssim(const Image& truth, const Image& result, SsimPreset preset, const Pi
   const PresetRow& row = RowOf(preset);
   double range = row.range * 255;
   if (preset == SsimPreset::kPatn && !result.bgr.empty()) {
-    const auto [least, most] = std::minmax_element(result.bgr.begin(), result.bgr.end());
-    range = *most - *least;
+    const auto [minimum, maximum] = std::minmax_element(result.bgr.begin(), result.bgr.end());
+    range = *maximum - *minimum;
   }
   return SsimOf(truth.width, truth.height, 3, row, range, mask, [&](int channel, const Box& box) {
     const auto read = [&truth, &result, box, channel](int x, int y, int n, double* a, double* b) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip seen by calibrated cameras and nothing else: joints triangulated from the cameras' own detections stand in
-/// for a 3D truth.
+/// Evaluates tracks on clips of calibrated cameras without a 3D truth: joints triangulated from the cameras' detections
+/// take its place.
 ///
-/// They place the mid-hip and give the clip's one scale, because a single camera knows neither. What is scored is
-/// therefore pose and orientation, as on AIST++.
+/// They determine the mid-hip and the global scale of the clip, which are not observable with a single camera. So pose
+/// and orientation are scored, as on AIST++.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,27 +22,27 @@ namespace bodyloom {
 
 struct TriangulatedClipOptions {
   double min_confidence = 0.3;       ///< of detections, for triangulation and scoring
-  double max_triangulation_px = 20;  ///< joints whose sightings disagree by more (root mean square) are unknown
+  double max_triangulation_px = 20;  ///< joints with a larger residual (root mean square) are unknown
 };
 
-/// The landmarks of COCO's list, in its order, from detections in another. Throws std::runtime_error beginning with
-/// `where` when one is missing.
+/// Converts detections to COCO's landmarks in its order. Throws std::runtime_error beginning with `where` when one is
+/// missing.
 KeypointSequence AsCoco17(const KeypointSequence& detections, const std::string& where);
 
-/// The joints of every frame that all views have, T of 17×3 metres in the world (triangulated_clip.h); NaN where fewer
-/// than two views saw a joint, or saw it in places that do not agree.
+/// Triangulates the joints of the frames that all views have: T of 17×3 metres in the world; NaN for joints seen in
+/// fewer than two views or inconsistently.
 std::vector<MatrixX3d> TriangulateViews(const std::vector<RigView>& views, const TriangulatedClipOptions& options = {});
 
-/// Protocol "rig-held-out": EvaluateHeldOutViews on a clip whose joints came from TriangulateViews(), and how far these
-/// lie from the detections (triangulation_median_px, triangulation_p95_px, triangulated_percent): a lower bound of
-/// their noise, because two cameras see only its part across the epipolar lines. `view` is the camera the track was
-/// fitted to.
+/// Protocol "rig-held-out": EvaluateHeldOutViews on a clip whose joints came from TriangulateViews(), and their
+/// distance from the detections (triangulation_median_px, triangulation_p95_px, triangulated_percent): a lower bound of
+/// their noise, because two cameras observe only its component across the epipolar lines. `view` is the camera the
+/// track was fitted to.
 Evaluation EvaluateTriangulatedClip(const Track& track, const MultiViewClip& clip, const std::string& view,
                                     const TriangulatedClipOptions& options = {});
 
-// A point from the pixels at which several calibrated cameras saw it.
+// Triangulation of a point from its pixels in several calibrated cameras.
 
-/// One camera's view of a point. Borrowed pointers.
+/// Observation of a point by one camera. Borrowed pointers.
 struct Sighting {
   const Camera* camera = nullptr;    ///< pinhole
   const CameraPose* pose = nullptr;  ///< camera from world
@@ -59,9 +59,9 @@ struct TriangulatedPoint {
 /// Source: Hartley and Zisserman, "Multiple View Geometry", chapter 12.
 TriangulatedPoint TriangulatePoint(std::span<const Sighting> sightings);
 
-// The two-camera protocol on Pose2Sim's balancing trial: fit one camera, score in the other.
+// The two-camera protocol on Pose2Sim's balancing trial: a fit to one camera is scored in the other.
 //
-// There is no 3D truth: joints triangulated from both cameras' detections stand in for it (triangulated_clip.h).
+// There is no 3D truth: joints triangulated from both cameras' detections take its place.
 
 struct Pose2SimOptions {
   std::string trial = "balancing";

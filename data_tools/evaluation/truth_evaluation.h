@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A track against a known truth: synthetic clips, where body, pose, shape and camera are known.
+/// Evaluates a track against a known truth: synthetic clips, whose body, pose, shape and camera are known.
 #pragma once
 
 #include "data_tools/evaluation/evaluation.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The surfaces of two tracks of one person, vertex by vertex.
+/// Compares the surfaces of two tracks of one person, vertex by vertex.
 #pragma once
 
 #include <vector>
@@ -23,9 +23,9 @@ struct VertexErrors {
   PositionError position;      ///< after moving pelvis onto pelvis, metres
 };
 
-/// Frame source[t] of `track` against frame t of `truth`, t < source.size(), both posed on `body` in the camera frame.
-/// The image is the truth's (camera.width × height). Throws std::invalid_argument when a pose or shape does not fit the
-/// body, a frame is not there, or vertex_step is below 1.
+/// Compares frame source[t] of `track` with frame t of `truth`, t < source.size(), both posed on `body` in the camera
+/// frame. The image is the truth's (camera.width × height). Throws std::invalid_argument when a pose or shape does not
+/// fit the body, a frame is out of range, or vertex_step is below 1.
 VertexErrors CompareVertices(const Track& track, const std::vector<int>& source, const Track& truth,
                              const BodyModel& body, const VertexErrorOptions& options = {});
 
@@ -34,8 +34,8 @@ enum class VertexErrorUnit {
   kPixels,       ///< distance of the projections, in pixels of options.image_side_px: the mean is projection_mean_px
 };
 
-/// Error of every vertex of frame t of `track` against frame t of `truth`; no values when either has no result there.
-/// Throws as CompareVertices.
+/// Error of every vertex of frame t of `track` against frame t of `truth`; empty if either has no result there. Throws
+/// as CompareVertices.
 Eigen::VectorXd VertexErrorsOfFrame(const Track& track, const Track& truth, int t, const BodyModel& body,
                                     VertexErrorUnit unit, const VertexErrorOptions& options = {});
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How true a track is in the world, where the camera moves: not in each picture, but from the clip's beginning to its
-/// end.
+/// Accuracy of a track in the world when the camera moves: not per image, but from the beginning to the end of the
+/// clip.
 ///
-/// Joints of track and truth in their scenes (geometry/scene/camera_path.h; that of a track without a path is its
-/// camera frame, which is what it claims), one rigid motion for the clip, no scale, found
-///   w_mpjpe_mm       on the first second's joints: what has drifted away since (W-MPJPE; WHAM and SLAHMR align the
+/// Joints of track and truth in their scenes (geometry/scene/camera_path.h; for a track without a path, its camera
+/// frame), after one rigid motion for the clip, without scale, fitted
+///   w_mpjpe_mm       on the first second's joints: drift since then (W-MPJPE; WHAM and SLAHMR align the
 ///                    first two frames of every 100, by a similarity)
 ///   wa_mpjpe_mm      on all joints (WA-MPJPE)
-///   root_drift_percent   mean distance of the pelvises after the latter, in percent of the true pelvis' way (RTE)
+///   root_drift_percent   mean distance of the pelvises after the latter, in percent of the true pelvis' path (RTE)
 ///   foot_slide_mps   mean speed of the track's ankles in frames in which the true ones move at less than 0.1 m/s
 /// Frames without a result are left out.
 #pragma once
@@ -20,11 +20,11 @@ namespace bodyloom {
 
 struct WorldDrift {
   double w_mpjpe_m = 0, wa_mpjpe_m = 0;
-  double root_drift = 0;      ///< a share; NaN when the true pelvis does not move
-  double foot_slide_mps = 0;  ///< NaN when no true foot stands
+  double root_drift = 0;      ///< a share; NaN if the true pelvis does not move
+  double foot_slide_mps = 0;  ///< NaN if no true foot is stationary
 };
 
-/// Both tracks on `body`, of the same frames (checked).
+/// Both tracks on `body` and of the same frames (checked).
 WorldDrift MeasureWorldDrift(const Track& track, const Track& truth, const BodyModel& body);
 
 /// The same as entries of an evaluation.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Markers as a C3D file: little-endian, points in float, millimetres, y up (X_SCREEN "+Z", Y_SCREEN "+Y"), no analog
-/// channels. A marker that is not known has the residual −1. Groups POINT, ANALOG, FORCE_PLATFORM and TRIAL.
-/// Source: c3d.org user guide; ezc3d's reader.
+/// Writes markers as a C3D file: little-endian, points in float, millimetres, y up (X_SCREEN "+Z", Y_SCREEN "+Y"), no
+/// analog channels. Unknown markers have the residual −1. Groups POINT, ANALOG, FORCE_PLATFORM and TRIAL. Source:
+/// c3d.org user guide; ezc3d's reader.
 #pragma once
 
 #include <string>

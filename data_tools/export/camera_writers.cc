@@ -22,7 +22,7 @@ constexpr double kCornerOfPixel = 0.5;
 std::string ColmapCamerasText(const Camera& camera) {
   BODYLOOM_CHECK(camera.model == CameraModel::kPinhole && camera.width > 0 && camera.height > 0, "COLMAP: a ",
                  ToString(camera.model), " camera of ", camera.width, "x", camera.height,
-                 " pixels, expected a pinhole camera with the size of its pictures");
+                 " pixels, expected a pinhole camera with the size of its images");
   char text[512];
   std::snprintf(text, sizeof text, "1 %s %d %d %.17g %.17g %.17g %.17g",
                 camera.HasDistortion() ? "FULL_OPENCV" : "PINHOLE", camera.width, camera.height, camera.fx, camera.fy,
@@ -77,7 +77,7 @@ void WriteColmap(const std::string& folder, const ExportScene& scene) {
 std::string Pose2SimCalibrationText(const std::string& name, const Camera& camera, const WorldFrame& world) {
   BODYLOOM_CHECK(camera.model == CameraModel::kPinhole && camera.width > 0 && camera.height > 0, "Pose2Sim: a ",
                  ToString(camera.model), " camera of ", camera.width, "x", camera.height,
-                 " pixels, expected a pinhole camera with the size of its pictures");
+                 " pixels, expected a pinhole camera with the size of its images");
   BODYLOOM_CHECK(!name.empty() && std::all_of(name.begin(), name.end(),
                                               [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; }),
                  "Pose2Sim: camera '", name, "', expected letters, digits, '_' and '-'");

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The clip's camera as a COLMAP model in text: a folder with cameras.txt, images.txt and points3D.txt, for
+/// Writes the clip's camera as a COLMAP text model: a folder with cameras.txt, images.txt and points3D.txt, for
 /// reconstruction and splat training.
 ///
-/// One camera: PINHOLE, or FULL_OPENCV where the lens distorts; principal point + 0.5, because COLMAP's picture begins
-/// at the corner of its first pixel. One image a frame of the first person's track, "frame_000000.png" by the track's
-/// frames that are known, all from the same place where the camera stands still: pose world → camera, quaternion w x y
-/// z. Points: the vertices of everybody's first known frame, as a start. World: metres, y up (unlike COLMAP's own
-/// reconstructions, whose up is anywhere).
+/// One camera: PINHOLE, or FULL_OPENCV where the lens distorts; principal point + 0.5, because COLMAP's origin is the
+/// corner of the first pixel. One image "frame_000000.png" … per known frame of the first person's track, all with the
+/// same pose if the camera is static: pose world → camera, quaternion w x y z. Points: the vertices of every person's
+/// first known frame, as initialisation. World: metres, y up (unlike COLMAP's own reconstructions, whose vertical is
+/// arbitrary).
 /// Source: colmap doc/format.rst.
 #pragma once
 
@@ -26,13 +26,13 @@ std::string ColmapPointsText(const ExportScene& scene);
 /// cannot be written.
 void WriteColmap(const std::string& folder, const ExportScene& scene);
 
-// The clip's camera as Pose2Sim's Calib.toml: metres, world with z up. One table: size, matrix (pixels), distortions
-// k1 k2 p1 p2, rotation (Rodrigues) and translation world → camera. Its x, y, z are our z, x, y
-// (y up), the turn that its TRC files undo.
+// Writes the clip's camera as Pose2Sim's Calib.toml: metres, world with z up. One table: size, matrix (pixels),
+// distortions k1 k2 p1 p2, rotation (Rodrigues) and translation world → camera. Its x, y, z are our z, x, y (y up), the
+// rotation that its TRC files undo.
 // Source: Pose2Sim calibration.py (toml_write).
 
-/// `name`: letters, digits, '_' and '-'. The further distortion coefficients k3 … k6, which the format has no place
-/// for, are left out. Throws std::invalid_argument for another name, no image size, or weak perspective.
+/// `name`: letters, digits, '_' and '-'. The distortion coefficients k3 … k6, which the format does not support, are
+/// left out. Throws std::invalid_argument for another name, no image size, or weak perspective.
 std::string Pose2SimCalibrationText(const std::string& name, const Camera& camera, const WorldFrame& world);
 void WritePose2SimCalibration(const std::string& path, const std::string& name, const Camera& camera,
                               const WorldFrame& world);

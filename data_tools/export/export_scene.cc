@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kOneFrameRate = 30;
 
-/// Where a camera that moves is, at the moments of all tracks.
+/// Poses of a moving camera at the moments of all tracks.
 void AddCameraKeys(std::span<const Track* const> tracks, ExportScene* scene) {
   std::map<double, CameraPose> at;
   for (const Track* track : tracks) {

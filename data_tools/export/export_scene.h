@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// People in their world, as animation programs want them: what the writers of this folder share.
+/// A scene of people in their world, the input of the writers of this folder.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,11 +19,11 @@ struct ExportPerson {
   const BodyModel* body = nullptr;  ///< borrowed
   Eigen::VectorXd betas;
   MatrixX3d rest_joints;        ///< J×3, of the shape
-  std::vector<double> seconds;  ///< of the frames below, since the scene's start
+  std::vector<double> seconds;  ///< times of the frames below, since the scene's start
   std::vector<BodyPose> poses;  ///< world frame; lost frames are left out
 };
 
-/// Where a camera that moves is at a moment.
+/// Pose of a moving camera at one moment.
 struct ExportCameraKey {
   double seconds = 0;  ///< since the scene's start
   CameraPose camera_from_world;
@@ -31,28 +31,28 @@ struct ExportCameraKey {
 
 struct ExportScene {
   WorldFrame world;
-  Camera camera;  ///< of the clip; a width of 0: the image size is not known
+  Camera camera;  ///< of the clip; a width of 0: the image size is unknown
   std::vector<ExportCameraKey>
-      camera_keys;     ///< of a camera that moves, rising; empty: it stands at world.camera_pose()
+      camera_keys;     ///< of a moving camera, increasing in time; empty: it is static at world.camera_pose()
   double fps = 30;     ///< of the first person's clock
   double start_s = 0;  ///< the earliest frame's time in the clip
   double duration_s = 0;
   std::vector<ExportPerson> people;
 
-  /// At a moment of the scene: the key nearest in time.
+  /// Returns the key nearest in time to a moment of the scene.
   [[nodiscard]] CameraPose CameraAt(double seconds) const;
 };
 
-/// The pose of a body whose pelvis joint rests at `rest_pelvis`, in the world: with R, t of the world,
+/// Transforms to the world the pose of a body whose pelvis joint rests at `rest_pelvis`, : with R, t of the world,
 /// R_root ← R·R_root and trans ← R(J0 + trans) + t − J0.
 BodyPose PoseInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, BodyPose pose_in_camera);
 
-/// The same for a motion in the camera frame; its lost frames stay NaN. The answer's y is up.
+/// The same for a motion in the camera frame; its lost frames stay NaN. The result has y up.
 Motion MotionInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, const Motion& motion);
 
-/// Tracks of one clip, each of the body beside it. Throws std::invalid_argument when there are none, bodies and tracks
-/// differ in number, a track has more joints than its body, or no frame with a result, and for a camera that moves in
-/// one track and stands still in another.
+/// Makes a scene of the tracks of one clip, each with the body of the same index. Throws std::invalid_argument when
+/// there are none, bodies and tracks differ in number, a track has more joints than its body or no frame with a result,
+/// or the camera moves in one track and is static in another.
 ExportScene MakeExportScene(std::span<const BodyModel* const> bodies, std::span<const Track* const> tracks,
                             const WorldFrame& world);
 

@@ -14,16 +14,16 @@ class GlbBuffer {
  public:
   enum Target { kNone = 0, kVertices = 34962, kIndices = 34963 };
 
-  /// `type`: "SCALAR", "VEC2", "VEC3", "VEC4" or "MAT4" (column-major). Arrays of vertices' positions and times of
-  /// animations need `with_range`, their smallest and largest values.
+  /// `type`: "SCALAR", "VEC2", "VEC3", "VEC4" or "MAT4" (column-major). Vertex positions and animation times need
+  /// `with_range`, their minimum and maximum.
   int AddFloats(std::span<const float> values, const std::string& type, Target target = kNone, bool with_range = false);
   int AddBytes4(std::span<const uint8_t> values);  ///< VEC4 of vertices
   int AddShorts4(std::span<const uint16_t> values);
-  int AddIndices(std::span<const uint32_t> values, int num_vertices);  ///< 16 bits where they suffice
-  /// A view alone, for pictures.
+  int AddIndices(std::span<const uint32_t> values, int num_vertices);  ///< 16 bits if they suffice
+  /// Adds a view without an accessor, for images.
   int AddView(std::span<const char> bytes, Target target = kNone);
 
-  /// As glTF's "bufferViews" and "accessors".
+  /// glTF's "bufferViews" and "accessors".
   [[nodiscard]] nlohmann::ordered_json Views() const;
   [[nodiscard]] nlohmann::ordered_json Accessors() const;
   [[nodiscard]] const std::string& bytes() const { return bytes_; }

@@ -244,7 +244,7 @@ class SceneWriter {
     AddPresence(person, first);
   }
 
-  /// Nothing of whoever is not there.
+  /// Scale 0 for people who are absent.
   void AddPresence(const ExportPerson& person, int first) {
     std::vector<std::pair<double, float>> keys;
     const auto push = [&](double seconds, float scale) {

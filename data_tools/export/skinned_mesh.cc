@@ -20,9 +20,9 @@ using Eigen::VectorXd;
 constexpr int kBasisFrames = 256, kJudgedFrames = 64;
 
 /// Up to `most` of n, evenly spread, first and last among them.
-std::vector<int> SpreadFrames(int n, int most) {
+std::vector<int> SpreadFrames(int n, int maximum) {
   std::vector<int> frames;
-  const int count = std::min(n, most);
+  const int count = std::min(n, maximum);
   frames.reserve(size_t(std::max(count, 0)));
   for (int i = 0; i < count; ++i)
     frames.push_back(count < 2 ? 0 : static_cast<int>(int64_t{i} * (n - 1) / (count - 1)));
@@ -78,7 +78,7 @@ void ReduceInfluences(const BodyModel& body, SkinnedMesh* mesh) {
     all.resize(std::min<size_t>(all.size(), kSkinInfluences));
     double sum = 0;
     for (const auto& [weight, joint] : all) sum -= weight;
-    float rest = 1;  // the heaviest takes what rounding leaves
+    float rest = 1;  // the largest weight absorbs the rounding error
     for (size_t k = all.size(); k-- > 1;) {
       joints[v][k] = all[k].second;
       weights[v][k] = static_cast<float>(-all[k].first / sum);
@@ -140,7 +140,7 @@ void AddShapes(const ExportPerson& person, int num_shapes, SkinnedMesh* mesh) {
   const Eigen::Index last = F.rows() - 1;
   for (int k = 0; k < num_shapes && k <= last; ++k) {
     const double square = solver.eigenvalues()[last - k];
-    // Below a micrometre (root mean square over vertices and frames) there is nothing to show.
+    // Components below a micrometre (root mean square over vertices and frames) are dropped.
     if (!(square > 1e-12 * double(F.rows()) * body.num_vertices())) break;
     VectorXd direction = F.transpose() * solver.eigenvectors().col(last - k) / std::sqrt(square);
     VectorXd weights = features * (G * direction);

@@ -15,7 +15,7 @@
 namespace bodyloom {
 namespace {
 
-/// Another one for each call: processes of two machines may have one number, and write into one folder.
+/// Different for each call: processes on two machines may have the same number and write into one folder.
 std::string TemporaryBeside(const std::string& target) {
   const std::filesystem::path path(target);
   std::random_device random;
@@ -35,7 +35,7 @@ void SyncFolderOf(const std::string& path) {
 
 }  // namespace
 
-void ThrowFileError(const std::string& path, const std::string& action) {
+void ThrowSystemError(const std::string& path, const std::string& action) {
   const int reason = errno;
   const std::string message = path + ": cannot " + action + ": " + std::strerror(reason);
   if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) throw DiskFullError(message);
@@ -43,9 +43,9 @@ void ThrowFileError(const std::string& path, const std::string& action) {
 }
 
 std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
-  // Without O_NONBLOCK, opening a pipe that nobody writes to would wait forever.
+  // Without O_NONBLOCK, opening a pipe without a writer would block forever.
   const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) ThrowFileError(path, "open for reading");
+  if (fd < 0) ThrowSystemError(path, "open for reading");
   struct stat info {};
   if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
     ::close(fd);
@@ -63,7 +63,7 @@ std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
       ::close(fd);
-      ThrowFileError(path, "read");
+      ThrowSystemError(path, "read");
     }
     if (n == 0) break;
     done += static_cast<size_t>(n);
@@ -76,7 +76,7 @@ std::string ReadFileBytes(const std::string& path, size_t max_bytes) {
 void WriteFileAtomically(const std::string& path, const std::string& bytes) {
   AtomicPath file(path);
   const int fd = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) ThrowFileError(path, "open for writing");
+  if (fd < 0) ThrowSystemError(path, "open for writing");
   size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
@@ -85,12 +85,12 @@ void WriteFileAtomically(const std::string& path, const std::string& bytes) {
       const int reason = errno;
       ::close(fd);
       errno = reason;
-      ThrowFileError(path,
-                     "write (" + std::to_string(done) + " of " + std::to_string(bytes.size()) + " bytes written)");
+      ThrowSystemError(path,
+                       "write (" + std::to_string(done) + " of " + std::to_string(bytes.size()) + " bytes written)");
     }
     done += static_cast<size_t>(n);
   }
-  if (::close(fd) != 0) ThrowFileError(path, "close");
+  if (::close(fd) != 0) ThrowSystemError(path, "close");
   file.Commit();
 }
 
@@ -102,11 +102,12 @@ AtomicPath::~AtomicPath() {
 
 void AtomicPath::Commit() {
   const int fd = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) ThrowFileError(target_, "finish (no output was written)");
+  if (fd < 0) ThrowSystemError(target_, "finish (no output was written)");
   const bool synced = ::fsync(fd) == 0;
   ::close(fd);
-  if (!synced) ThrowFileError(target_, "flush to disk");
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) ThrowFileError(target_, "move the finished file into place");
+  if (!synced) ThrowSystemError(target_, "flush to disk");
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0)
+    ThrowSystemError(target_, "move the finished file into place");
   committed_ = true;
   SyncFolderOf(target_);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Files appear whole or not at all: temporary file beside the target → write → fsync → rename → fsync of the folder.
+/// Atomic writing of files: temporary file beside the target → write → fsync → rename → fsync of the folder.
 #pragma once
 
 #include <cctype>
@@ -10,23 +10,23 @@
 
 namespace bodyloom {
 
-/// Nothing more can be written: the disk, the quota or the file-size limit is used up.
+/// Error when the disk, the quota or the file-size limit is exhausted.
 class DiskFullError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws "path: cannot ACTION: " and what errno says: DiskFullError, or else std::runtime_error.
-[[noreturn]] void ThrowFileError(const std::string& path, const std::string& action);
+/// Throws "path: cannot ACTION: " with the text of errno: DiskFullError, or else std::runtime_error.
+[[noreturn]] void ThrowSystemError(const std::string& path, const std::string& action);
 
-/// Whole contents of a file. Throws std::runtime_error with path and reason; larger than max_bytes is refused.
+/// Returns the whole contents of a file. Throws std::runtime_error with path and reason, also above max_bytes.
 std::string ReadFileBytes(const std::string& path, size_t max_bytes = size_t{1} << 32);
 
 /// Writes `bytes` to `path` atomically. Throws std::runtime_error with path and reason (no folder, no permission, disk
-/// full: DiskFullError); a failure leaves whatever stood at `path` untouched and no temporary behind.
+/// full: DiskFullError); on failure an existing file at `path` is unchanged and no temporary file remains.
 void WriteFileAtomically(const std::string& path, const std::string& bytes);
 
-/// For writers that need a path (video encoders): hands out a temporary path beside the target with the same extension;
+/// For writers that need a path (video encoders): provides a temporary path beside the target with the same extension;
 /// Commit() fsyncs and renames; the destructor removes the temporary when Commit was not called.
 class AtomicPath {
  public:
@@ -42,16 +42,16 @@ class AtomicPath {
   bool committed_ = false;
 };
 
-// The files of a folder and of all folders below it.
+// Files of a folder and of all folders below it.
 
-/// Every regular file below the folder, sorted by path, so that the same folder gives the same order everywhere; a
-/// path that is no folder is returned as it is. Folders behind symbolic links are not entered. Throws
-/// std::runtime_error naming the folder when it, or one below it, cannot be read.
+/// Every regular file below the folder, sorted by path, so that the order is the same everywhere; a path that is not a
+/// folder is returned itself. Folders behind symbolic links are not entered. Throws std::runtime_error naming the
+/// folder when it, or one below it, cannot be read.
 std::vector<std::string> FilesBelow(const std::string& path);
 
-// The kind of a file by its name.
+// File extensions.
 
-/// ".jpg" of "Photo.JPG"; empty when the name has none.
+/// ".jpg" of "Photo.JPG"; empty if the name has none.
 inline std::string LowerExtension(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

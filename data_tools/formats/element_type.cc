@@ -117,13 +117,13 @@ std::string ElementTypeText(const NdArray& array) {
 }
 
 std::optional<size_t> ArrayBytes(const std::vector<int64_t>& shape, size_t item_size) {
-  // Elements without bytes ("<U0") take no room in the file, so their number needs a bound of its own.
+  // Elements without bytes ("<U0") take no space in the file, so their number needs a separate bound.
   const size_t kMax = item_size == 0 ? size_t{1} << 20 : size_t{1} << 62;
   if (shape.size() > 32) return std::nullopt;
   size_t bytes = std::max<size_t>(item_size, 1);
   for (const int64_t n : shape) {
     if (n < 0) return std::nullopt;
-    // A zero dimension must not hide absurd others: the product is taken over max(n, 1).
+    // The product is taken over max(n, 1), so that a zero dimension does not hide absurd others.
     const size_t factor = std::max<size_t>(static_cast<size_t>(n), 1);
     if (bytes > kMax / factor) return std::nullopt;
     bytes *= factor;
@@ -143,7 +143,7 @@ NdArray ArrayFromBytes(const ElementType& type, std::vector<int64_t> shape, bool
   array.bytes = fortran_order && array.shape.size() > 1 && !bytes.empty()
                     ? ReorderToC(array.shape, type.item_size, bytes)
                     : std::string(bytes);
-  // Bytes have no order, whatever their type string says.
+  // Bytes have no order, regardless of their type string.
   if (type.big_endian && type.dtype != DType::kBytes) {
     SwapBytes(type.dtype == DType::kUnicode ? 4 : type.item_size, &array.bytes);
   }

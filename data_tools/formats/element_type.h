@@ -18,14 +18,14 @@ struct ElementType {
   bool big_endian = false;
 };
 
-/// Nothing for types that are not plain numbers or strings (objects, structures, complex, dates, 128-bit floats).
-/// A missing byte order means little endian.
+/// Nullopt for types that are not plain numbers or strings (objects, structures, complex, dates, 128-bit floats). A
+/// missing byte order means little endian.
 std::optional<ElementType> ParseElementType(std::string_view descr);
 
 /// The little-endian type string of an array's elements.
 std::string ElementTypeText(const NdArray& array);
 
-/// Bytes that an array of this shape takes; nothing when a dimension is negative, the rank exceeds 32 (numpy's limit),
+/// Size of an array of this shape in bytes; nullopt when a dimension is negative, the rank exceeds 32 (numpy's limit),
 /// or the product overflows.
 std::optional<size_t> ArrayBytes(const std::vector<int64_t>& shape, size_t item_size);
 

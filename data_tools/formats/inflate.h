@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Files that are one zlib or gzip stream as a whole: gzipped text, compressed joblib pickles.
+/// Inflates files that are a single zlib or gzip stream: gzipped text, compressed joblib pickles.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ bool LooksLikeGzip(std::string_view bytes);
 bool LooksLikeZlib(std::string_view bytes);
 
 /// The contents of a gzip or zlib stream. Throws std::runtime_error naming `where` for a damaged or truncated stream
-/// and for contents of more than max_bytes; memory grows with what has been inflated.
+/// and for contents of more than max_bytes; memory grows with the inflated size.
 std::string Inflate(std::string_view bytes, const std::string& where, size_t max_bytes);
 
 }  // namespace bodyloom

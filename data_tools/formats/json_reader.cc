@@ -50,8 +50,8 @@ void CheckDepthAndTokens(const std::string& text, const std::string& where, int 
   }
 }
 
-/// nlohmann's messages start with "[json.exception...] parse error at line 1, column 5: "; the part that helps is last.
-/// They quote what was read, which may hold anything.
+/// nlohmann's messages start with "[json.exception...] parse error at line 1, column 5: "; the last part is the useful
+/// one. They quote the input, which may contain arbitrary characters.
 std::string Reason(const json::exception& error) {
   const std::string text = error.what();
   const size_t marker = text.find("syntax error");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// JSON from strangers: parsed with limits, read through a cursor whose errors name the file and the place.
+/// Untrusted JSON: parsed with limits, read through a cursor whose errors name the file and the place.
 ///
 /// Limits are enforced before anything is built: size of the text, nesting depth (a linear scan that knows strings),
 /// and NaN / Infinity tokens, which JSON does not have although some writers emit them. Errors are std::runtime_error
@@ -21,7 +21,7 @@ struct JsonLimits {
 nlohmann::json ParseJson(const std::string& text, const std::string& where, const JsonLimits& limits = {});
 nlohmann::json ReadJsonFile(const std::string& path, const JsonLimits& limits = {});
 
-/// A JSON value that knows where it stands ("calib.json: cameras[2].K"). Refers to a document that must outlive it.
+/// A JSON value with its location ("calib.json: cameras[2].K"). Refers to a document that must outlive it.
 class JsonNode {
  public:
   JsonNode(const nlohmann::json& value, std::string place) : value_(&value), place_(std::move(place)) {}
@@ -32,13 +32,13 @@ class JsonNode {
   [[nodiscard]] bool is_number() const;
   [[nodiscard]] bool is_string() const;
   [[nodiscard]] bool is_null() const;
-  /// Entries of an array or object; 0 for anything else.
+  /// Number of entries of an array or object; 0 for anything else.
   [[nodiscard]] size_t size() const;
-  /// Whether this is an object with that key.
+  /// Returns true if this is an object with that key.
   [[nodiscard]] bool Has(const std::string& key) const;
   [[nodiscard]] std::vector<std::string> Keys() const;
 
-  // Everything below throws std::runtime_error naming the place when the value is not what was requested.
+  // The functions below throw std::runtime_error naming the place when the value is not as requested.
   [[nodiscard]] JsonNode At(const std::string& key) const;
   [[nodiscard]] JsonNode At(size_t index) const;
   [[nodiscard]] double Number() const;    ///< finite
@@ -48,7 +48,7 @@ class JsonNode {
   [[nodiscard]] std::string Text() const;
   /// All numbers of an array, nested arrays flattened in order; `expected_count` < 0 accepts any number of them.
   [[nodiscard]] std::vector<double> Numbers(int expected_count = -1) const;
-  /// "place: found <kind>, expected <expected>".
+  /// Throws "place: found <kind>, expected <expected>".
   [[noreturn]] void Fail(const std::string& expected) const;
 
  private:

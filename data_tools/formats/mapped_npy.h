@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The values of a .npy file where they lie: pages are read when they are looked at and make room again when memory is
-/// short, so that an array may be larger than memory.
+/// Memory-maps the values of a .npy file: pages are read on access and released when memory is short, so an array may
+/// be larger than memory.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@ namespace bodyloom {
 
 class MappedNpy {
  public:
-  /// The file may be removed from its folder afterwards; it must not be cut short. Throws std::runtime_error
-  /// "path: why" for a file that cannot be opened, is not a .npy, or whose values are not `dtype` in C order, little
-  /// endian and on multiples of their size (numpy pads headers so that they are).
+  /// The file may be unlinked afterwards; it must not be truncated. Throws std::runtime_error "path: why" for a file
+  /// that cannot be opened, is not a .npy, or whose values are not `dtype` in C order, little endian and on multiples
+  /// of their size (numpy pads headers so that they are).
   MappedNpy(const std::string& path, DType dtype);
 
   [[nodiscard]] const std::vector<int64_t>& shape() const { return shape_; }
-  /// All of them, as long as this is there.
+  /// All values; valid during the lifetime of this object.
   template <class T>
   [[nodiscard]] std::span<const T> Values() const {
     return {reinterpret_cast<const T*>(values_.data()), values_.size() / sizeof(T)};

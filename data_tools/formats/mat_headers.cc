@@ -53,7 +53,7 @@ size_t Inflate(const unsigned char* bytes, size_t size, std::array<unsigned char
   return head->size() - stream.avail_out;
 }
 
-/// What is wrong with the head of a matrix; empty: nothing.
+/// Describes the fault in the head of a matrix; empty: none.
 std::string Fault(const HeaderWords& head) {
   if (!head.Has(0, 4 * kTag)) return "a variable that is cut short";
   if (head.At(0) != kMatrix) return Concatenate("data of type ", head.At(0), ", expected a matrix");
@@ -88,7 +88,7 @@ void CheckMatHeaders(const std::string& path) {
   const std::string signature = bytes.size() < kFileHeader ? "" : bytes.substr(kSignature, 2);
   const bool swapped = signature == "MI";
   const std::string version = bytes.size() < kFileHeader ? "" : bytes.substr(kVersion, 2);
-  // libmatio takes whatever is neither 5 nor 7.3 for version 4, whose headers claim sizes too.
+  // libmatio reads anything other than 5 and 7.3 as version 4, whose headers claim sizes too.
   if ((signature != "IM" && !swapped) || version != (swapped ? "\1\0"s : "\0\1"s)) {
     throw std::runtime_error(path + ": not a MATLAB version 5 file, expected one saved with -v6 or -v7");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A typed n-dimensional array as it lies in .npy, .npz and pickle files: C order, little endian, owned bytes.
+/// A typed n-dimensional array of .npy, .npz and pickle files: C order, little endian, owned bytes.
 #pragma once
 
 #include <bit>
@@ -13,8 +13,8 @@
 
 namespace bodyloom {
 
-/// kOther: anything else (pickled objects, structures, complex numbers, dates), carried without its contents so that
-/// the other arrays of a file can be read; `bytes` holds numpy's description of the type.
+/// kOther: anything else (pickled objects, structures, complex numbers, dates), kept without its contents, so that the
+/// other arrays of a file can be read; `bytes` holds numpy's description of the type.
 /// kBF16 (the upper half of a float) occurs in network weights and not in numpy's files.
 enum class DType {
   kBool,
@@ -38,7 +38,7 @@ enum class DType {
 struct NdArray {
   DType dtype = DType::kF64;
   std::vector<int64_t> shape;  ///< empty: a scalar
-  size_t item_size = 8;        ///< bytes an element (strings: width of an element)
+  size_t item_size = 8;        ///< bytes per element (strings: width of an element)
   std::string bytes;           ///< C order
 
   [[nodiscard]] int64_t num_elements() const;
@@ -64,7 +64,7 @@ struct NdArray {
   static NdArray FromDouble(double value);              ///< scalar
 };
 
-// IEEE half precision, as .npy files and descriptors hold it.
+// IEEE half precision, as in .npy files and descriptors.
 
 /// The value of 16 bits; exact. Subnormal numbers, infinities and NaN included.
 inline float FloatFromHalf(uint16_t half) {
@@ -75,16 +75,16 @@ inline float FloatFromHalf(uint16_t half) {
     value = fraction == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
   } else if (exponent == 0) {
     value = static_cast<float>(fraction) * 0x1p-24F;
-  } else {  // the same bits with another bias; weights of networks come by the million
+  } else {  // the same bits with another bias; fast, as network weights come by the million
     value = std::bit_cast<float>(static_cast<uint32_t>((exponent + 112) << 23 | fraction << 13));
   }
   return (half & 0x8000) != 0 ? -value : value;
 }
 
-// Arrays of indices out of files.
+// Arrays of indices from files.
 
-/// The whole numbers of the array called `name`; std::runtime_error naming `where`, the array and the element when it
-/// holds anything else.
+/// Returns the integers of the array called `name`; throws std::runtime_error naming `where`, the array and the element
+/// if it holds anything else.
 std::vector<int64_t> WholeNumbers(const NdArray& array, const std::string& name, const std::string& where);
 
 }  // namespace bodyloom

@@ -105,7 +105,7 @@ void NpyStream::Write(int64_t index, std::span<const std::span<const char>> piec
       ++first;
     }
   }
-  // Starts on its way to the disk now, while the next record is computed; a hint, so failure does not matter.
+  // Starts writing to disk now, while the next record is computed; a hint, so failure does not matter.
   ::sync_file_range(descriptor_, static_cast<off_t>(begin), static_cast<off_t>(record_bytes_), SYNC_FILE_RANGE_WRITE);
   ++num_written_;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A .npy file written record by record, for arrays larger than memory: numpy.load(path, mmap_mode="r") opens it.
-/// Its place and size on disk are fixed from the start, so records may be written in any order and by several threads;
-/// the file appears at its path, whole, when Finish() returns, or not at all.
+/// Writes a .npy file record by record, for arrays larger than memory: numpy.load(path, mmap_mode="r") opens it. The
+/// file has its full size from the start, so records may be written in any order and by several threads; it appears at
+/// its path atomically when Finish() returns.
 #pragma once
 
 #include <atomic>
@@ -19,19 +19,19 @@ namespace bodyloom {
 class NpyStream {
  public:
   /// An array of `shape` (the first dimension counts the records), elements of `dtype` (numbers). Reserves the disk
-  /// space where the file system can, so that a full disk shows now and not after an hour. Throws std::runtime_error
-  /// "path: ..." when the file cannot be made, std::invalid_argument for a shape that no memory could address.
+  /// space where the file system can, so that a full disk is reported at once. Throws std::runtime_error "path: ..."
+  /// when the file cannot be created, std::invalid_argument for a shape that no memory could address.
   NpyStream(const std::string& path, DType dtype, std::vector<int64_t> shape);
-  /// Without Finish() everything written is thrown away.
+  /// Discards everything written if Finish() was not called.
   ~NpyStream();
   NpyStream(const NpyStream&) = delete;
   NpyStream& operator=(const NpyStream&) = delete;
 
   [[nodiscard]] size_t record_bytes() const { return record_bytes_; }
 
-  /// The record at `index`, in pieces that follow each other. Safe to call from several threads for different records.
-  /// Throws std::runtime_error naming the path when the disk is full, std::invalid_argument when the index or the
-  /// number of bytes is wrong.
+  /// Writes the record at `index`, given in consecutive pieces. Safe to call from several threads for different
+  /// records. Throws std::runtime_error naming the path when the disk is full, std::invalid_argument when the index or
+  /// the number of bytes is wrong.
   void Write(int64_t index, std::span<const std::span<const char>> pieces);
 
   /// Flushes to disk and moves the file into place. Throws std::runtime_error naming the path; std::invalid_argument

@@ -45,7 +45,7 @@ NpzArrays ReadNpzBytes(const std::string& bytes, const std::string& where, size_
     if (name.size() < 4 || name.substr(name.size() - 4) != ".npy") continue;
     name.resize(name.size() - 4);
     arrays[name] = ParseNpy(member.bytes, where + ": '" + PrintableText(name) + "'");
-    std::string().swap(member.bytes);  // so that packed, unpacked and parsed copies do not add up
+    std::string().swap(member.bytes);  // frees the packed copy before the next member is parsed
   }
   return arrays;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// .npy and .npz files: numpy's array format and zip archives of it (stored or deflated, zip64).
 ///
-/// The reader checks every claim before memory is taken: header at most 64 KiB, shape product without overflow, size
-/// equal to the bytes present, deflate ratio at most 1100:1. Object arrays are never unpickled: in an archive they
-/// arrive as DType::kOther without contents (SMPL-X files hold some beside the arrays that matter) and are refused when
-/// requested. Members that are not arrays are passed over. Source: numpy/lib/format.py, APPNOTE.TXT.
+/// The reader checks every claim before allocating memory: header at most 64 KiB, shape product without overflow, size
+/// equal to the bytes present, deflate ratio at most 1100:1. Object arrays are never unpickled: in an archive they are
+/// kept as DType::kOther without contents (SMPL-X files contain some) and refused when requested. Members that are not
+/// arrays are skipped. Source: numpy/lib/format.py, APPNOTE.TXT.
 #pragma once
 
 #include <map>
@@ -23,13 +23,13 @@ NpzArrays ReadNpzBytes(const std::string& bytes, const std::string& where, size_
 NdArray ReadNpy(const std::string& path);
 NdArray ReadNpyBytes(const std::string& bytes, const std::string& where);
 
-/// Deflated, deterministic (entries in name order, fixed dates), written whole or not at all.
+/// Deflated, deterministic (entries in name order, fixed dates), written atomically.
 std::string NpzBytes(const NpzArrays& arrays);
 void WriteNpz(const std::string& path, const NpzArrays& arrays);
 std::string NpyBytes(const NdArray& array);
 void WriteNpy(const std::string& path, const NdArray& array);
 
-/// The array `name` (numbers or text), or std::runtime_error naming `where`, the key, and the keys present.
+/// Returns the array `name` (numbers or text); throws std::runtime_error naming `where`, the key, and the keys present.
 const NdArray& RequireArray(const NpzArrays& arrays, const std::string& name, const std::string& where);
 
 }  // namespace bodyloom

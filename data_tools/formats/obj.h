@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Wavefront OBJ: positions, texture coordinates and polygons. Normals, groups, materials and everything else are
-/// passed over.
+/// ignored.
 #pragma once
 
 #include <string>
@@ -22,8 +22,8 @@ struct ObjMesh {
   [[nodiscard]] int num_faces() const { return static_cast<int>(face_begin.size()) - 1; }
 };
 
-/// Throws std::runtime_error "path: line n: what was found, expected what" on numbers that are none or not finite,
-/// indices of 0 or beyond what stands above, and faces of fewer than three corners.
+/// Throws std::runtime_error "path: line n: what was found, expected what" for invalid or non-finite numbers, indices
+/// of 0 or beyond the preceding elements, and faces of fewer than three corners.
 ObjMesh ReadObj(const std::string& path);
 ObjMesh ReadObjBytes(std::string_view text, const std::string& where);
 

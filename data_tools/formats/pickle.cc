@@ -79,8 +79,8 @@ void Finish(PickleNode* root, int max_depth, PickleContext* context) {
   }
 }
 
-/// Cuts the links of all nodes that the result does not hold (all of them when reading failed), so that neither a cycle
-/// nor a very deep chain is left to the destructors.
+/// Cuts the links of all nodes that the result does not hold (all of them when reading failed), so that the destructors
+/// meet neither cycles nor very deep chains.
 void Release(PickleContext* context, bool keep_result) {
   for (const PickleNodePtr& node : context->nodes) {
     if (keep_result && node->visit == 2) continue;
@@ -135,7 +135,7 @@ PicklePtr ReadPickle(const std::string& bytes, const std::string& where, const P
 
 PicklePtr ReadPickleAt(PickleDialect dialect, std::string_view bytes, size_t* offset, const std::string& where,
                        const PickleLimits& limits) {
-  // Memory in proportion to the file: a few bytes can ask for much (memo references, sparse matrices), honestly or not.
+  // Memory in proportion to the file: a few bytes can request much (memo references, sparse matrices).
   constexpr size_t kFloor = size_t{64} << 20, kPerByte = 256;
   const size_t budget = std::min(limits.max_bytes, kFloor + kPerByte * bytes.size());
   PickleContext context(dialect, where, budget, limits.max_items);

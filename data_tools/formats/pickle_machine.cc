@@ -37,7 +37,7 @@ class PickleMachine {
       if (at_ >= in_.size()) context_.Fail("the pickle ends without its STOP mark, it is cut off");
       const auto opcode = static_cast<unsigned char>(in_[at_++]);
       if (opcode == '.') return Pop();
-      if (!RunValue(opcode) && !RunContainer(opcode) && !RunMemo(opcode) && !RunObject(opcode)) Refuse(opcode);
+      if (!RunValue(opcode) && !RunContainer(opcode) && !RunMemo(opcode) && !RunObject(opcode)) ThrowFileError(opcode);
     }
   }
 
@@ -379,7 +379,7 @@ class PickleMachine {
     if (context_.dialect() == PickleDialect::kTorch) return " (save the model's state_dict() alone)";
     return module.substr(0, 6) == "joblib" ? " (files of joblib before 0.10 are not read; save it again)" : "";
   }
-  /// torch.save points to its storages so; the id is a tuple.
+  /// torch.save refers to its storages by these; the id is a tuple.
   void PushPersistentId() {
     const PickleNodePtr id = Pop();
     if (id->kind != Kind::kTuple) context_.Fail("a persistent id that is not a tuple");
@@ -445,7 +445,7 @@ class PickleMachine {
     }
   }
 
-  [[noreturn]] void Refuse(unsigned char opcode) const {
+  [[noreturn]] void ThrowFileError(unsigned char opcode) const {
     const char* meaning = opcode == 'P' || opcode == 'Q'     ? " (a persistent id)"
                           : opcode >= 0x82 && opcode <= 0x84 ? " (an extension code)"
                           : opcode == 0x97 || opcode == 0x98 ? " (a buffer outside the file)"

@@ -366,7 +366,7 @@ PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callabl
       return NewDtype(context, args);
     case PickleGlobal::kOrderedDict:
       return NewOrderedDict(context, args);
-    case PickleGlobal::kDefaultDict:  // its argument is what makes the defaults
+    case PickleGlobal::kDefaultDict:  // its argument is the factory of defaults
       return context->New(Kind::kDict);
     case PickleGlobal::kDict:
       if (!args.items.empty()) context->Fail("dict called with arguments, expected none");
@@ -408,7 +408,7 @@ void SetPickleState(PickleContext* context, PickleNode* object, const PicklePtr&
   const PickleNode& state = AsNode(state_value);
   if (object->kind == Kind::kArray && object->is_open) return SetArrayState(context, object, state);
   if (object->kind == Kind::kDict && object->global == PickleGlobal::kOrderedDict && state.kind == Kind::kDict) {
-    return;  // attributes of the dictionary itself, which are no entries
+    return;  // attributes of the dictionary itself, not entries
   }
   if (object->kind != Kind::kObject || object->is_callable) {
     context->Fail("a state for something that takes none");

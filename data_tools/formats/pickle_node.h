@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Nodes of the pickle machine: values under construction, the budget they are charged to, and the meaning of the few
-/// globals that are understood. Internal to pickle.cc and pickle_node.cc.
+/// Nodes of the pickle machine: values under construction, their memory budget, and the few globals that are
+/// understood. Internal to pickle.cc and pickle_node.cc.
 #pragma once
 
 #include <memory>
@@ -33,15 +33,15 @@ enum class PickleGlobal {
   kBytes,
   kSet,
   kTorchStorage,    ///< torch.*Storage: a name, never called
-  kTorchRebuild,    ///< torch._utils._rebuild_*: a call is kept as it is
+  kTorchRebuild,    ///< torch._utils._rebuild_*: a call is kept unevaluated
   kTorchParameter,  ///< torch.nn.parameter.Parameter: its arguments, then its state
 };
 
 struct PickleNode : PickleValue {
-  std::string_view view;  ///< text still lying in the file (then `text` is empty); copied when the result needs it
-  PickleGlobal global = PickleGlobal::kNone;  ///< what a class or function is, or an instance is of
+  std::string_view view;  ///< text still in the file (then `text` is empty); copied when the result needs it
+  PickleGlobal global = PickleGlobal::kNone;  ///< global of a class or function, or of an instance's class
   bool is_callable = false;                   ///< the class or function itself, not an instance
-  bool is_open = false;                       ///< an array that still waits for its state
+  bool is_open = false;                       ///< an array whose state has not been read yet
   uint8_t visit = 0;                          ///< 0 new, 1 on the path, 2 done
   int height = 0;                             ///< levels below and including this one
 
@@ -49,10 +49,10 @@ struct PickleNode : PickleValue {
 };
 using PickleNodePtr = std::shared_ptr<PickleNode>;
 
-/// Nodes are only ever made by PickleContext::New, so every PicklePtr inside the machine is one.
+/// All nodes are made by PickleContext::New, so every PicklePtr inside the machine is a PickleNode.
 inline const PickleNode& AsNode(const PicklePtr& value) { return static_cast<const PickleNode&>(*value); }
 
-/// Where the machine stands and what it may still use.
+/// Position of the machine and its remaining budget.
 class PickleContext {
  public:
   PickleContext(PickleDialect dialect, std::string where, size_t budget, size_t max_items)
@@ -65,7 +65,7 @@ class PickleContext {
 
   /// Throws std::runtime_error "where: byte offset: message".
   [[noreturn]] void Fail(const std::string& message) const;
-  /// Takes `bytes` from the budget before they are allocated.
+  /// Deducts `bytes` from the budget before they are allocated.
   void Charge(size_t bytes);
   PickleNodePtr New(PickleValue::Kind kind);
 
@@ -78,15 +78,14 @@ class PickleContext {
 /// kNone for everything that is not on the dialect's list.
 PickleGlobal FindPickleGlobal(PickleDialect dialect, std::string_view name);
 
-/// What `callable(*args)` builds; args is a tuple.
+/// Builds the value of `callable(*args)`; args is a tuple.
 PickleNodePtr CallPickleGlobal(PickleContext* context, const PickleNode& callable, const PickleNode& args);
 
 /// Gives `object` its state (opcode BUILD). Sparse matrices and chumpy objects become plain arrays here.
 void SetPickleState(PickleContext* context, PickleNode* object, const PicklePtr& state);
 
-/// joblib's NumpyArrayWrapper, with its state, becomes the array whose bytes lie behind it: `rest` begins there.
-/// Returns how many bytes are the array's: one for the length of the padding (joblib from 1.2), the padding, the
-/// elements.
+/// Turns joblib's NumpyArrayWrapper, with its state, into the array whose bytes follow at `rest`. Returns the number of
+/// bytes consumed: one for the length of the padding (joblib from 1.2), the padding, the elements.
 size_t TakeJoblibArray(PickleContext* context, PickleNode* wrapper, std::string_view rest);
 
 }  // namespace bodyloom

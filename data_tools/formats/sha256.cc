@@ -77,7 +77,7 @@ std::string Sha256OfFile(const std::string& path) {
 }
 
 std::string Sha256OfTree(const std::string& path) {
-  std::error_code unreadable;  // which reading it will tell
+  std::error_code unreadable;  // reported by the read below
   if (!std::filesystem::is_directory(path, unreadable)) return Sha256OfFile(path);
   Sha256 sha;
   for (const std::string& file : FilesBelow(path)) {

@@ -41,7 +41,7 @@ constexpr StorageType kStorageTypes[] = {
     {"torch.ShortStorage", {DType::kI16, 2, false}},  {"torch.CharStorage", {DType::kI8, 1, false}},
     {"torch.ByteStorage", {DType::kU8, 1, false}},    {"torch.BoolStorage", {DType::kBool, 1, false}}};
 
-/// What a persistent id means: a run of elements in a keyed storage.
+/// Meaning of a persistent id: a range of elements in a keyed storage.
 struct StorageId {
   std::string key;
   ElementType type;
@@ -117,7 +117,7 @@ class TensorCollector {
   }
 
  private:
-  /// The tensor that a value is, or that a parameter wraps; nullptr for anything else.
+  /// Returns the tensor of a value or of the parameter that wraps it; nullptr for anything else.
   static const PickleValue* TensorOf(const PickleValue& value) {
     if (IsTensor(value)) return &value;
     if (!IsCall(value, "torch._utils._rebuild_parameter") && !IsCall(value, "torch.nn.parameter.Parameter")) {

@@ -51,7 +51,7 @@ constexpr TypeName kTypes[] = {{"BOOL", DType::kBool, 1}, {"U8", DType::kU8, 1},
                                {"I32", DType::kI32, 4},   {"F32", DType::kF32, 4}, {"I64", DType::kI64, 8},
                                {"F64", DType::kF64, 8}};
 
-/// Builds the header's JSON and refuses what the format rules out on the way: nesting beyond three levels, a key twice.
+/// Builds the header's JSON and refuses what the format does not allow: nesting beyond three levels, duplicate keys.
 class HeaderGuard {
  public:
   explicit HeaderGuard(const std::string& where) : where_(where) {}
@@ -87,7 +87,7 @@ struct TensorEntry {
   uint64_t begin = 0, end = 0;
 };
 
-/// The whole numbers of an array of the header; nothing when it is anything else.
+/// The whole numbers of an array of the header; nullopt when it is anything else.
 std::optional<std::vector<int64_t>> WholeNumbers(const json& entry, const char* key) {
   const auto it = entry.find(key);
   if (it == entry.end() || !it->is_array()) return std::nullopt;

@@ -133,7 +133,7 @@ std::vector<DirectoryEntry> ReadDirectory(const ArchiveBytes& in, const Director
   return entries;
 }
 
-/// Where a member's packed bytes start, after its own header.
+/// Offset of a member's packed bytes, after its own header.
 size_t PackedBegin(const ArchiveBytes& in, const DirectoryEntry& entry, uint64_t directory_offset) {
   const std::string member = "member '" + PrintableText(entry.name) + "': ";
   if ((entry.flags & 1) != 0) in.Fail(member + "is encrypted, expected a plain archive");
@@ -169,7 +169,7 @@ std::string Unpack(const ArchiveBytes& in, const DirectoryEntry& entry, std::str
     int result = Z_OK;
     size_t taken = 0, given = 0;
     constexpr size_t kStep = size_t{1} << 30;  // zlib counts in 32 bits
-    char overflow = 0;                         // one byte of room beyond the promise shows a stream that is too long
+    char overflow = 0;                         // one byte beyond the stated size detects a stream that is too long
     while (result == Z_OK) {
       const size_t in_step = std::min(kStep, packed.size() - taken), room = std::min(kStep, bytes.size() - given);
       stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + taken));
@@ -200,8 +200,8 @@ size_t SizeOf(std::span<const std::string_view> pieces) {
   return size;
 }
 
-/// The pieces, one after the other, packed; nothing when that is no smaller. Grows with what comes out: pieces may be
-/// most of the memory there is.
+/// The pieces, one after the other, packed; nullopt when that is not smaller. Grows with the output, as the pieces may
+/// take most of the memory.
 std::optional<std::string> Deflate(std::span<const std::string_view> pieces, int level) {
   z_stream stream{};
   if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();

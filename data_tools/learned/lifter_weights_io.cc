@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kMostBlocks = 64;
+constexpr int kMaxBlocks = 64;
 
 }  // namespace
 
@@ -49,9 +49,9 @@ LifterWeights ReadLifterWeightsBytes(const std::string& bytes, const std::string
   const auto vector = [&](const std::string& name) { return VectorFrom(arrays, name, where); };
   LifterWeights weights;
   const std::vector<int64_t> dilations = WholeNumbers(RequireArray(arrays, "dilations", where), "dilations", where);
-  if (dilations.size() > kMostBlocks) {
+  if (dilations.size() > kMaxBlocks) {
     throw std::runtime_error(where + ": dilations names " + std::to_string(dilations.size()) +
-                             " blocks, expected at most " + std::to_string(kMostBlocks));
+                             " blocks, expected at most " + std::to_string(kMaxBlocks));
   }
   for (size_t b = 0; b < dilations.size(); ++b) {
     const std::string name = "block" + std::to_string(b) + ".";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The lifter's weights as a file: one .npz with arrays `input`, `input_bias`, `dilations` (B), `blockN.dilated`, …,
+/// Files of the lifter's weights: one .npz with arrays `input`, `input_bias`, `dilations` (B), `blockN.dilated`, …,
 /// `output`, `output_bias` (geometry/scene/lifter_weights.h has their shapes) and `recipe` (text). Matrices are stored
 /// as half-precision floats, so the file rounds them to 11 bits; vectors as single.
 #pragma once

@@ -19,16 +19,16 @@ void WriteParserWeights(const std::string& path, const ParserWeights& weights) {
   std::string why;
   BODYLOOM_CHECK(weights.IsValid(&why), "parser weights: ", why);
   NpzArrays arrays;
-  PutPictureUnet(weights.network, kParserPlanes, &arrays);
+  PutImageUnet(weights.network, kParserPlanes, &arrays);
   arrays[kPersonSize] = FloatNumber(static_cast<float>(weights.pixels_per_metre));
   arrays["recipe"] = NdArray::FromString(weights.recipe);
   WriteNpz(path, arrays);
 }
 
 ParserWeights ReadParserWeightsBytes(const std::string& bytes, const std::string& where) {
-  const NpzArrays arrays = ReadNpzBytes(bytes, where, kMostPictureUnetBytes);
+  const NpzArrays arrays = ReadNpzBytes(bytes, where, kMaxImageUnetBytes);
   ParserWeights weights;
-  weights.network = PictureUnetFrom(arrays, kParserPlanes, where);
+  weights.network = ImageUnetFrom(arrays, kParserPlanes, where);
   weights.pixels_per_metre = NumberFrom(arrays, kPersonSize, where);
   weights.recipe = RecipeFrom(arrays, where);
   std::string why;
@@ -37,7 +37,7 @@ ParserWeights ReadParserWeightsBytes(const std::string& bytes, const std::string
 }
 
 ParserWeights ReadParserWeights(const std::string& path) {
-  return ReadParserWeightsBytes(ReadFileBytes(path, kMostPictureUnetBytes), path);
+  return ReadParserWeightsBytes(ReadFileBytes(path, kMaxImageUnetBytes), path);
 }
 
 }  // namespace bodyloom
@@ -61,8 +61,8 @@ std::string BiasOf(const std::string& layer) { return layer + "_bias"; }
 
 }  // namespace
 
-void PutPictureUnet(const PictureUnetWeights& weights, PictureUnetPlanes planes, NpzArrays* arrays) {
-  const auto layers = PictureUnetLayers(planes);
+void PutImageUnet(const ImageUnetWeights& weights, ImageUnetPlanes planes, NpzArrays* arrays) {
+  const auto layers = ImageUnetLayers(planes);
   for (size_t i = 0; i < layers.size(); ++i) {
     const std::string name = layers[i].name;
     (*arrays)[name] = HalfMatrix(weights.convolutions.at(i).kernel);
@@ -70,9 +70,9 @@ void PutPictureUnet(const PictureUnetWeights& weights, PictureUnetPlanes planes,
   }
 }
 
-PictureUnetWeights PictureUnetFrom(const NpzArrays& arrays, PictureUnetPlanes planes, const std::string& where) {
-  PictureUnetWeights weights;
-  for (const PictureUnetLayer& layer : PictureUnetLayers(planes)) {
+ImageUnetWeights ImageUnetFrom(const NpzArrays& arrays, ImageUnetPlanes planes, const std::string& where) {
+  ImageUnetWeights weights;
+  for (const ImageUnetLayer& layer : ImageUnetLayers(planes)) {
     const std::string name = layer.name;
     weights.convolutions.push_back({MatrixFrom(arrays, name, where), VectorFrom(arrays, BiasOf(name), where)});
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The clothes parser's weights as a file: one .npz with the arrays of its network (parser_weights_io.h),
-/// `pixels_per_metre` (one number) and `recipe` (text).
+/// Files of the clothes parser's weights: one .npz with the arrays of its network (below), `pixels_per_metre` (one
+/// number) and `recipe` (text).
 #pragma once
 
 #include <cstddef>
@@ -20,16 +20,15 @@ void WriteParserWeights(const std::string& path, const ParserWeights& weights);
 ParserWeights ReadParserWeights(const std::string& path);
 ParserWeights ReadParserWeightsBytes(const std::string& bytes, const std::string& where);
 
-// The numbers of a picture U-Net (render/image/parser_weights.h) as arrays of a .npz file: NAME (out × 9·in,
-// half-precision floats, so the file rounds them to 11 bits) and NAME_bias (out) of each of PictureUnetLayers().
+// Weights of an image U-Net (render/image/parser_weights.h) as arrays of a .npz file: NAME (out × 9·in, half-precision
+// floats, so the file rounds them to 11 bits) and NAME_bias (out) of each of ImageUnetLayers().
 
-/// No file of such weights is larger.
-inline constexpr size_t kMostPictureUnetBytes = size_t{1} << 26;
+/// Upper bound of the size of files with such weights.
+inline constexpr size_t kMaxImageUnetBytes = size_t{1} << 26;
 
-/// The weights are valid.
-void PutPictureUnet(const PictureUnetWeights& weights, PictureUnetPlanes planes, NpzArrays* arrays);
-/// Sizes are for the caller to check (IsValid()). Throws std::runtime_error naming the file, the array and what was
-/// expected.
-PictureUnetWeights PictureUnetFrom(const NpzArrays& arrays, PictureUnetPlanes planes, const std::string& where);
+/// The weights must be valid.
+void PutImageUnet(const ImageUnetWeights& weights, ImageUnetPlanes planes, NpzArrays* arrays);
+/// The caller checks the sizes (IsValid()). Throws std::runtime_error naming the file, the array and what was expected.
+ImageUnetWeights ImageUnetFrom(const NpzArrays& arrays, ImageUnetPlanes planes, const std::string& where);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The pose prior's file: one .npz with `joints` (names), `log_weights` K, `means` K×D, `covariance_upper` K×D(D+1)/2
+/// Files of the pose prior: one .npz with `joints` (names), `log_weights` K, `means` K×D, `covariance_upper` K×D(D+1)/2
 /// (row by row, float32), `arm_log_density` and `leg_log_density` N×N in int8 steps of 1/16.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Learns the pose prior from motions: a mixture of Gaussians over joint rotations by expectation–maximisation, and
-/// densities of limb directions by counting.
+/// densities of limb directions by histograms.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,19 @@ namespace bodyloom {
 
 struct LearnPosePriorOptions {
   int num_components = 8;
-  double sample_rate = 15;  ///< frames a second that are looked at
-  double floor_rad = 0.06;  ///< standard deviation added to every rotation: what mocap does not vary, people do
+  double sample_rate = 15;  ///< frames per second that are used
+  double floor_rad = 0.06;  ///< standard deviation added to every rotation, for variation that motion capture lacks
   double shrinkage = 0.1;   ///< shrinkage of each covariance towards its diagonal
   int num_directions = 200;
   double direction_sigma_deg = 12;  ///< smoothing of the direction densities
-  double uniform_share = 0.02;      ///< of the direction densities: the impossible stays possible
+  double uniform_share = 0.02;      ///< uniform share of the direction densities, so that none is zero
   int iterations = 40;
   uint64_t seed = 1;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-/// Every clip counts by the square root of its length, and is seen mirrored as well, so the prior is symmetric.
-/// Motions must have the body's joints (24 on SMPL's tree); throws std::invalid_argument otherwise or without frames.
+/// Every clip is weighted by the square root of its length and also used mirrored, so the prior is symmetric. Motions
+/// must have the body's joints (24 on SMPL's tree); throws std::invalid_argument otherwise or without frames.
 PosePrior LearnPosePrior(const std::vector<Motion>& motions, const BodyModel& body,
                          const LearnPosePriorOptions& options);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Matrices and vectors of a network's weights as the arrays of a .npz file.
+/// Conversion of matrices and vectors of network weights to and from arrays of a .npz file.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 
 namespace bodyloom {
 
-/// Rounded to half precision, 11 bits.
+/// Converts a matrix, rounded to half precision (11 bits).
 NdArray HalfMatrix(const RowMatrixXf& matrix);
 NdArray FloatVector(const Eigen::VectorXf& vector);
 NdArray FloatNumber(float number);
@@ -18,9 +18,9 @@ NdArray FloatNumber(float number);
 /// Throw std::runtime_error naming the file, the array and what was expected.
 RowMatrixXf MatrixFrom(const NpzArrays& arrays, const std::string& name, const std::string& where);
 Eigen::VectorXf VectorFrom(const NpzArrays& arrays, const std::string& name, const std::string& where);
-/// The one number of an array.
+/// Returns the single number of an array.
 float NumberFrom(const NpzArrays& arrays, const std::string& name, const std::string& where);
-/// The text of `recipe`, which may be empty but not missing.
+/// Returns the text of `recipe`, which may be empty but must exist.
 std::string RecipeFrom(const NpzArrays& arrays, const std::string& where);
 
 }  // namespace bodyloom

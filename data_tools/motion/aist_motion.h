@@ -13,10 +13,10 @@
 
 namespace bodyloom {
 
-inline constexpr double kAistFps = 60;  ///< of the recordings, whose files do not say it
+inline constexpr double kAistFps = 60;  ///< of the recordings; not stated in their files
 
 bool IsAistMotion(const PickleValue& file);
-/// smpl_scaling / 100: metres of the world a metre of the body. Throws as below.
+/// Returns smpl_scaling / 100: metres of the world per metre of the body. Throws as below.
 double AistBodyScale(const PickleValue& file, const std::string& where);
 /// Throws std::runtime_error naming `where`, the key, what it holds and what was expected.
 Motion AistMotionFromPickle(const PickleValue& file, const std::string& where, double fps = kAistFps);

@@ -27,11 +27,11 @@ double RateForReaders(const Motion& motion) {
 RowMatrixXd RequireMatrix(const NpzArrays& arrays, const std::string& key, const std::string& where) {
   const NdArray& array = RequireArray(arrays, key, where);
   if (!array.is_number() || array.shape.size() != 2) {
-    Refuse(where, key, "shape " + array.ShapeText() + ", expected frames x values");
+    ThrowFileError(where, key, "shape " + array.ShapeText() + ", expected frames x values");
   }
   RowMatrixXd matrix = array.ToMatrix();
   for (Eigen::Index t = 0; t < matrix.rows(); ++t) {
-    if (!matrix.row(t).allFinite()) Refuse(where, key, "frame " + std::to_string(t) + " is not finite");
+    if (!matrix.row(t).allFinite()) ThrowFileError(where, key, "frame " + std::to_string(t) + " is not finite");
   }
   return matrix;
 }
@@ -40,9 +40,10 @@ double FrameRateOf(const NpzArrays& arrays, const std::string& where) {
   for (const char* key : {"mocap_framerate", "mocap_frame_rate"}) {
     const auto found = arrays.find(key);
     if (found == arrays.end()) continue;
-    if (!found->second.is_number() || found->second.num_elements() != 1) Refuse(where, key, "expected one number");
+    if (!found->second.is_number() || found->second.num_elements() != 1)
+      ThrowFileError(where, key, "expected one number");
     const double fps = found->second.ToDoubles()[0];
-    if (!(fps > 0 && fps < 1e5)) Refuse(where, key, std::to_string(fps) + ", expected frames a second");
+    if (!(fps > 0 && fps < 1e5)) ThrowFileError(where, key, std::to_string(fps) + ", expected frames a second");
     return fps;
   }
   throw std::runtime_error(where + ": neither 'mocap_framerate' nor 'mocap_frame_rate' nor 'timestamps'");
@@ -52,12 +53,12 @@ std::vector<double> TimestampsOf(const NpzArrays& arrays, int num_frames, const 
   const auto found = arrays.find("timestamps");
   if (found == arrays.end()) return RegularTimestamps(num_frames, 1 / FrameRateOf(arrays, where));
   if (!found->second.is_number() || found->second.num_elements() != num_frames) {
-    Refuse(where, "timestamps", found->second.ShapeText() + " values, expected " + std::to_string(num_frames));
+    ThrowFileError(where, "timestamps", found->second.ShapeText() + " values, expected " + std::to_string(num_frames));
   }
   std::vector<double> timestamps = found->second.ToDoubles();
   for (int t = 0; t < num_frames; ++t) {
     if (!std::isfinite(timestamps[t]) || (t > 0 && !(timestamps[t] > timestamps[t - 1]))) {
-      Refuse(where, "timestamps", "entry " + std::to_string(t) + ": expected finite, increasing seconds");
+      ThrowFileError(where, "timestamps", "entry " + std::to_string(t) + ": expected finite, increasing seconds");
     }
   }
   return timestamps;
@@ -69,7 +70,7 @@ Motion::Up UpOf(const NpzArrays& arrays, const std::string& where) {
   if (found == arrays.end()) return Motion::Up::kZ;
   const std::vector<std::string> text =
       found->second.is_text() ? found->second.ToStrings() : std::vector<std::string>();
-  if (text.size() != 1 || (text[0] != "y" && text[0] != "z")) Refuse(where, "up_axis", "expected 'y' or 'z'");
+  if (text.size() != 1 || (text[0] != "y" && text[0] != "z")) ThrowFileError(where, "up_axis", "expected 'y' or 'z'");
   return text[0] == "y" ? Motion::Up::kY : Motion::Up::kZ;
 }
 
@@ -83,16 +84,16 @@ Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where) {
   const RowMatrixXd poses = RequireMatrix(arrays, "poses", where);
   const Eigen::Index columns = poses.cols();
   if (columns != 72 && columns != 156 && columns != 162 && columns != 165) {
-    Refuse(where, "poses",
-           "shape " + RequireArray(arrays, "poses", where).ShapeText() +
-               ", expected 72 (SMPL), 156 (SMPL-H), 162 or 165 (SMPL-X) columns");
+    ThrowFileError(where, "poses",
+                   "shape " + RequireArray(arrays, "poses", where).ShapeText() +
+                       ", expected 72 (SMPL), 156 (SMPL-H), 162 or 165 (SMPL-X) columns");
   }
-  if (poses.rows() == 0) Refuse(where, "poses", "no frames");
+  if (poses.rows() == 0) ThrowFileError(where, "poses", "no frames");
   const RowMatrixXd trans = RequireMatrix(arrays, "trans", where);
   if (trans.rows() != poses.rows() || trans.cols() != 3) {
-    Refuse(where, "trans",
-           "shape " + RequireArray(arrays, "trans", where).ShapeText() + ", expected " + std::to_string(poses.rows()) +
-               "x3");
+    ThrowFileError(where, "trans",
+                   "shape " + RequireArray(arrays, "trans", where).ShapeText() + ", expected " +
+                       std::to_string(poses.rows()) + "x3");
   }
   Motion motion;
   motion.body = "smpl";
@@ -104,11 +105,11 @@ Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where) {
     const NdArray& betas = found->second;
     const bool is_row = betas.shape.size() == 2 && betas.shape[0] == 1;
     if (!betas.is_number() || (betas.shape.size() != 1 && !is_row) || betas.num_elements() > 1000) {
-      Refuse(where, "betas", "shape " + betas.ShapeText() + ", expected one shape for the clip");
+      ThrowFileError(where, "betas", "shape " + betas.ShapeText() + ", expected one shape for the clip");
     }
     const std::vector<double> values = betas.ToDoubles();
     motion.betas = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-    if (!motion.betas.allFinite()) Refuse(where, "betas", "not finite");
+    if (!motion.betas.allFinite()) ThrowFileError(where, "betas", "not finite");
   }
   motion.timestamps = TimestampsOf(arrays, motion.num_frames(), where);
   motion.up = UpOf(arrays, where);

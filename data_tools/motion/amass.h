@@ -3,9 +3,9 @@
 /// `betas`, `gender`, and the frame rate as `mocap_framerate` or, in the SMPL-X release, `mocap_frame_rate`. z up.
 ///
 /// Columns 0–2 are the root, 3–65 SMPL's 21 body joints in every family; hands, jaw and eyes are left out and SMPL's
-/// two hand joints are zero. A file may say otherwise than AMASS: `timestamps` (T seconds) override the frame rate,
-/// `up_axis` is "y" or "z", and `camera_model` marks a track in camera coordinates. Source: amass.is.tue.mpg.de,
-/// headers of the released files.
+/// two hand joints are zero. A file may deviate from AMASS: `timestamps` (T seconds) override the frame rate, `up_axis`
+/// is "y" or "z", and `camera_model` marks a track in camera coordinates. Source: amass.is.tue.mpg.de, headers of the
+/// released files.
 #pragma once
 
 #include <string>
@@ -16,20 +16,20 @@
 namespace bodyloom {
 
 bool IsAmass(const NpzArrays& arrays);
-/// A motion of SMPL's 24 joints. Throws std::runtime_error naming `where`, the key, what it holds and what was
+/// Returns a motion of SMPL's 24 joints. Throws std::runtime_error naming `where`, the key, what it holds and what was
 /// expected.
 Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where);
 
 /// Writes the SMPL-H form (156 columns, z up) of a 24- or 52-joint motion; `rest_pelvis` is the body's pelvis joint at
-/// rest, about which the root turns. `timestamps` are written too. Throws std::invalid_argument for a broken motion.
+/// rest, about which the root turns. `timestamps` are written too. Throws std::invalid_argument for an invalid motion.
 void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
                 const std::string& gender = "neutral");
 
-/// Writes the SMPL-X form, as GMR (retargeting to robots) and other readers of AMASS' second release take it: `poses`
-/// T×165 and the same in parts (`root_orient`, `pose_body` T×63, `pose_jaw`, `pose_eye`, `pose_hand` T×90), `trans`, 16
+/// Writes the SMPL-X form, for GMR (retargeting to robots) and other readers of AMASS' second release: `poses` T×165
+/// and the same in parts (`root_orient`, `pose_body` T×63, `pose_jaw`, `pose_eye`, `pose_hand` T×90), `trans`, 16
 /// `betas`, `gender` text, `surface_model_type` 'smplx', the frame rate under both spellings; z up. Motions of 24, 52
-/// or 55 joints; SMPL's two hand joints are left out. `betas` are the motion's when its body is SMPL-X and 0 otherwise:
-/// then the root's place is that of the same pelvis on SMPL-X's mean neutral shape. Throws as WriteAmass().
+/// or 55 joints; SMPL's two hand joints are left out. `betas` are the motion's if its body is SMPL-X, otherwise 0, with
+/// `trans` set for the same pelvis on SMPL-X's mean neutral shape. Throws as WriteAmass().
 void WriteAmassSmplx(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
                      const std::string& gender = "neutral");
 

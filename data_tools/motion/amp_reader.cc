@@ -15,7 +15,7 @@ namespace {
 
 using Kind = PickleValue::Kind;
 
-constexpr size_t kMostJoints = 1000;
+constexpr size_t kMaxJoints = 1000;
 
 /// Bytes before the pickle: magic, version, header length, header; 0 when this is no .npy with an object dtype.
 size_t ObjectNpyHeaderSize(const std::string& bytes) {
@@ -32,7 +32,7 @@ size_t ObjectNpyHeaderSize(const std::string& bytes) {
 const PickleValue& Require(const PickleValue& table, const std::string& key, Kind kind, const std::string& where) {
   const PickleValue* value = table.Find(key);
   if (value == nullptr || value->kind != kind)
-    Refuse(where, "no '" + key + "' of the right kind, expected a SkeletonMotion");
+    ThrowFileError(where, "no '" + key + "' of the right kind, expected a SkeletonMotion");
   return *value;
 }
 
@@ -45,7 +45,8 @@ const NdArray& RequireArr(const PickleValue& table, const std::string& key, cons
   if (!is_right) {
     NdArray expected;
     expected.shape = shape;
-    Refuse(where, key + ": shape " + array.ShapeText() + ", expected " + expected.ShapeText() + " numbers (-1: any)");
+    ThrowFileError(where,
+                   key + ": shape " + array.ShapeText() + ", expected " + expected.ShapeText() + " numbers (-1: any)");
   }
   return array;
 }
@@ -66,23 +67,24 @@ bool IsObjectNpy(const std::string& bytes) { return ObjectNpyHeaderSize(bytes) >
 
 SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& where) {
   const size_t header = ObjectNpyHeaderSize(bytes);
-  if (header == 0) Refuse(where, "not a .npy file of Python objects");
+  if (header == 0) ThrowFileError(where, "not a .npy file of Python objects");
   PicklePtr file = ReadPickle(bytes.substr(header), where);
   while (file->kind == Kind::kList && file->items.size() == 1) file = file->items[0];  // the 0-d array of objects
-  if (file->kind != Kind::kDict) Refuse(where, "the pickled object is no dictionary, expected a SkeletonMotion");
+  if (file->kind != Kind::kDict)
+    ThrowFileError(where, "the pickled object is no dictionary, expected a SkeletonMotion");
 
   const PickleValue& tree = Require(*file, "skeleton_tree", Kind::kDict, where);
   const PickleValue& names = Require(tree, "node_names", Kind::kList, where);
   SkeletonMotion motion;
   for (const PicklePtr& name : names.items) motion.names.push_back(name->text);
   const auto J = static_cast<int64_t>(motion.names.size());
-  if (J == 0 || motion.names.size() > kMostJoints) Refuse(where, "node_names: " + std::to_string(J) + " joints");
+  if (J == 0 || motion.names.size() > kMaxJoints) ThrowFileError(where, "node_names: " + std::to_string(J) + " joints");
   const std::vector<int64_t> parents =
       WholeNumbers(RequireArr(tree, "parent_indices", {J}, where), "parent_indices", where);
   for (int64_t j = 0; j < J; ++j) {
     if (j == 0 ? parents[j] != -1 : (parents[j] < 0 || parents[j] >= j)) {
-      Refuse(where, "parent_indices[" + std::to_string(j) + "] is " + std::to_string(parents[j]) +
-                        ", expected -1 for the first joint and an earlier joint for the others");
+      ThrowFileError(where, "parent_indices[" + std::to_string(j) + "] is " + std::to_string(parents[j]) +
+                                ", expected -1 for the first joint and an earlier joint for the others");
     }
     motion.parents.push_back(static_cast<int>(parents[j]));
   }
@@ -90,12 +92,12 @@ SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& wher
 
   const NdArray& rotation = RequireArr(*file, "rotation", {-1, J, 4}, where);
   const int64_t T = rotation.shape[0];
-  if (T == 0) Refuse(where, "rotation: no frames");
-  if (static_cast<size_t>(T * J) > kMostRotations)
-    Refuse(where, "rotation: " + std::to_string(T) + " frames are too many");
+  if (T == 0) ThrowFileError(where, "rotation: no frames");
+  if (static_cast<size_t>(T * J) > kMaxRotations)
+    ThrowFileError(where, "rotation: " + std::to_string(T) + " frames are too many");
   motion.root_positions = RequireArr(*file, "root_translation", {T, 3}, where).ToMatrix();
   if (!motion.root_positions.allFinite() || !motion.offsets.allFinite()) {
-    Refuse(where, "root_translation or local_translation is not finite");
+    ThrowFileError(where, "root_translation or local_translation is not finite");
   }
   const PickleValue* is_local = file->Find("is_local");
   const bool are_local = is_local == nullptr || is_local->kind != Kind::kBool || is_local->boolean;
@@ -104,8 +106,9 @@ SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& wher
   for (int64_t i = 0; i < T * J; ++i) {
     const Eigen::Quaterniond quaternion(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2]);
     if (!(quaternion.norm() > 0.5 && quaternion.norm() < 2)) {
-      Refuse(where, "rotation of frame " + std::to_string(i / J) + ", joint '" + PrintableText(motion.names[i % J]) +
-                        "': a quaternion of length " + std::to_string(quaternion.norm()) + ", expected 1");
+      ThrowFileError(where, "rotation of frame " + std::to_string(i / J) + ", joint '" +
+                                PrintableText(motion.names[i % J]) + "': a quaternion of length " +
+                                std::to_string(quaternion.norm()) + ", expected 1");
     }
     motion.rotations[i] = quaternion.normalized().toRotationMatrix();
   }
@@ -114,7 +117,7 @@ SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& wher
     for (int64_t j = J; --j > 0;) frame[j] = frame[motion.parents[j]].transpose() * frame[j];
   }
   const double fps = NumberOf(file->Find("fps"));
-  if (!(fps > 0 && fps < 1e5)) Refuse(where, "fps is " + std::to_string(fps) + ", expected a positive number");
+  if (!(fps > 0 && fps < 1e5)) ThrowFileError(where, "fps is " + std::to_string(fps) + ", expected a positive number");
   motion.timestamps = RegularTimestamps(static_cast<int>(T), 1 / fps);
   return motion;
 }

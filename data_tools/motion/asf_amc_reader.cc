@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostBones = 2000;
+constexpr size_t kMaxBones = 2000;
 
 /// A degree of freedom: translation or rotation along an axis.
 struct Freedom {
@@ -122,12 +122,12 @@ void ReadBone(TextScanner* scanner, Asf* asf) {
     }  // id, limits, bodymass, … do not matter here
   }
   if (bone.name.empty()) scanner->Fail("a bone without a name");
-  if (asf->bones.size() >= kMostBones) scanner->Fail("more than " + std::to_string(kMostBones) + " bones");
+  if (asf->bones.size() >= kMaxBones) scanner->Fail("more than " + std::to_string(kMaxBones) + " bones");
   bone.vector = direction.norm() > 0 ? Eigen::Vector3d(direction.normalized() * length) : Eigen::Vector3d::Zero();
   asf->bones.push_back(bone);
 }
 
-/// Hangs every bone on its parent and puts parents before children.
+/// Assigns every bone's parent and sorts parents before children.
 void SetParents(TextScanner* scanner, Asf* asf, const std::map<std::string, std::string>& parent_of) {
   std::map<std::string, size_t> index;
   for (size_t b = 0; b < asf->bones.size(); ++b) index[asf->bones[b].name] = b;
@@ -193,7 +193,7 @@ Asf ReadAsf(const std::string& text, const std::string& where) {
           asf.radians_per_unit = unit == "deg" ? M_PI / 180 : 1;
         }
       }
-    }  // version, name, documentation, skin: read over word by word
+    }  // version, name, documentation, skin: skipped word by word
   }
   if (asf.bones.size() < 2) scanner.Fail("no bones, expected a section :bonedata");
   const std::map<std::string, std::string> parent_of = HierarchyLines(text);
@@ -255,7 +255,7 @@ SkeletonMotion AsfAmcFromText(const std::string& asf_text, const std::string& as
   while (!scanner.AtEnd()) {
     scanner.Integer("a frame number", 0, 1'000'000'000);
     const size_t t = positions.size();
-    if ((t + 1) * J > kMostRotations) scanner.Fail("more than " + std::to_string(t) + " frames are too many");
+    if ((t + 1) * J > kMaxRotations) scanner.Fail("more than " + std::to_string(t) + " frames are too many");
     motion.rotations.resize((t + 1) * J, Eigen::Matrix3d::Identity());
     positions.emplace_back(Eigen::Vector3d::Zero());
     seen.assign(asf.bones.size(), false);

@@ -3,7 +3,7 @@
 ///
 /// A bone b has a rest direction and length in world axes, a frame C_b given by the Euler angles `axis` (applied in the
 /// order written: "XYZ" is Rz·Ry·Rx) and degrees of freedom M_b in that frame. With all rest frames parallel to the
-/// world its joint rotation is C_b·M_b·C_b⁻¹. A bone's joint sits at its near end: joint "ltibia" is the left knee. A
+/// world its joint rotation is C_b·M_b·C_b⁻¹. A bone's joint is at its near end: joint "ltibia" is the left knee. A
 /// bone without degrees of freedom, or absent from the motion (fingers often are), stays at rest. Lengths stay in file
 /// units (CMU: 0.45⁻¹ inches). AMC has no frame rate; CMU's is 120 Hz. Source: Schafer, Acclaim skeleton file
 /// definition V1.10; mocap.cs.cmu.edu.
@@ -15,7 +15,7 @@
 
 namespace bodyloom {
 
-/// `asf_path` may be empty: then "<subject>.asf" or "<subject>.asf.gz" is looked for beside the motion, the subject
+/// `asf_path` may be empty: then "<subject>.asf" or "<subject>.asf.gz" is searched in the motion's folder, the subject
 /// being the motion's file name up to the first '_'.
 SkeletonMotion ReadAsfAmc(const std::string& amc_path, const std::string& asf_path = "", double fps = 120);
 /// Throws std::runtime_error naming the file and the line.

@@ -11,7 +11,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kMostBvhJoints = 2000;
+constexpr int kMaxBvhJoints = 2000;
 constexpr double kSlowestFrame = 10;  ///< seconds
 
 struct Channel {
@@ -49,7 +49,7 @@ struct Hierarchy {
 
 /// Adds a joint with its OFFSET; returns its index.
 int AddJoint(TextScanner* scanner, Hierarchy* h, const std::string& name, int parent) {
-  if (h->offsets.size() >= kMostBvhJoints) scanner->Fail("more than " + std::to_string(kMostBvhJoints) + " joints");
+  if (h->offsets.size() >= kMaxBvhJoints) scanner->Fail("more than " + std::to_string(kMaxBvhJoints) + " joints");
   scanner->Expect("OFFSET");
   Eigen::Vector3d offset;
   for (double& value : offset) value = scanner->Number("an offset");
@@ -106,7 +106,7 @@ SkeletonMotion BvhFromText(const std::string& text, const std::string& where) {
 
   scanner.Expect("MOTION");
   scanner.Expect("Frames:");
-  const int num_frames = scanner.Integer("a number of frames", 1, static_cast<int>(kMostRotations));
+  const int num_frames = scanner.Integer("a number of frames", 1, static_cast<int>(kMaxRotations));
   scanner.Expect("Frame");
   scanner.Expect("Time:");
   const double frame_time = scanner.Number("a frame time");
@@ -116,7 +116,7 @@ SkeletonMotion BvhFromText(const std::string& text, const std::string& where) {
   // Every number takes two bytes at least: a claim that the file cannot hold is refused before memory is taken.
   const size_t num_channels = h.channels.size();
   if (num_channels == 0) scanner.Fail("no joint has channels");
-  if (size_t(num_frames) * J > kMostRotations) scanner.Fail(std::to_string(num_frames) + " frames are too many");
+  if (size_t(num_frames) * J > kMaxRotations) scanner.Fail(std::to_string(num_frames) + " frames are too many");
   if (size_t(num_frames) * num_channels > scanner.remaining_bytes() / 2 + 1) {
     scanner.Fail(std::to_string(num_frames) + " frames of " + std::to_string(num_channels) +
                  " channels are more than the rest of the file can hold");

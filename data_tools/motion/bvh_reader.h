@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Biovision hierarchies (.bvh, .bvh.gz): any skeleton, any order of channels.
 ///
-/// HIERARCHY names joints with offsets and channels; MOTION holds one line of numbers a frame, degrees. Rotation
+/// HIERARCHY names joints with offsets and channels; MOTION holds one line of numbers per frame, degrees. Rotation
 /// channels multiply in the order they are listed: "Zrotation Yrotation Xrotation" is Rz·Ry·Rx. The root's position
-/// channels are its position; position channels of other joints are read over (bones keep their lengths). Units are
-/// whatever the writer used. Source: Meredith and Maddock, "Motion Capture File Formats Explained".
+/// channels are its position; position channels of other joints are ignored (bones keep their lengths). Units are those
+/// of the writer. Source: Meredith and Maddock, "Motion Capture File Formats Explained".
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Loads recorded motion of any form: recognises the format by content and returns SMPL's 24 joints.
+/// Loads recorded motion in any supported format, recognised by content, as a motion of SMPL's 24 joints.
 ///
 /// Read: AMASS and track .npz, AIST++ motions .pkl, BVH, Acclaim .amc with its .asf, DeepMimic JSON, AMP .npy; the text
 /// forms may be gzipped. Skeletons other than SMPL's are retargeted (retarget.h).
@@ -13,7 +13,7 @@
 namespace bodyloom {
 
 struct LoadMotionOptions {
-  double fps = 0;             ///< frame rate of files that do not say; 0: 60 for AIST++, 120 for AMC
+  double fps = 0;             ///< frame rate of files without one; 0: 60 for AIST++, 120 for AMC
   std::string skeleton_path;  ///< .asf of an .amc; empty: beside it
   double resample_fps = 0;    ///< when positive, the motion is resampled to it
 };

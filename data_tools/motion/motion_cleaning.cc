@@ -74,7 +74,7 @@ double MedianStep(const std::vector<double>& times) {
   return *middle;
 }
 
-/// Whether nobody gets from frame t−1 to frame t.
+/// Returns true if the step from frame t−1 to frame t exceeds a limit.
 bool IsJump(const Motion& motion, const std::vector<MatrixX3d>& joints, int t, const MotionCleaningOptions& options) {
   const double dt = motion.timestamps[t] - motion.timestamps[t - 1];
   const MatrixX3d step = joints[t] - joints[t - 1];

@@ -14,7 +14,7 @@ namespace bodyloom {
 namespace {
 
 constexpr double kSupportSpeed = 0.8, kSupportVerticalSpeed = 0.2;
-constexpr double kLevelBand = 0.06, kFlatBand = 0.08, kFlatShare = 0.9, kLeastSupport_s = 0.1;
+constexpr double kLevelBand = 0.06, kFlatBand = 0.08, kFlatShare = 0.9, kMinSupport_s = 0.1;
 
 constexpr std::array<double, 24> kClearance = {
     0.10, 0.09,  0.09,         // pelvis, hips
@@ -81,7 +81,7 @@ FloorEstimate EstimateFloor(std::span<const Motion> pieces) {
   const auto flat = std::count_if(support.begin(), support.end(),
                                   [&](double height) { return std::abs(height - floor.height_m) <= kFlatBand; });
   floor.flat_share = static_cast<double>(flat) / static_cast<double>(support.size());
-  floor.has_floor = floor.support_s >= kLeastSupport_s && floor.flat_share >= kFlatShare;
+  floor.has_floor = floor.support_s >= kMinSupport_s && floor.flat_share >= kFlatShare;
   if (!floor.has_floor)
     floor.height_m = median_of_band(static_cast<size_t>(0.05 * static_cast<double>(support.size())));
   return floor;

@@ -31,8 +31,8 @@ struct Origin {
   std::string source, subject;
 };
 
-/// By the name: CMU numbers its trials SUBJECT_TRIAL, AIST++ has genre_situation_camera_DANCER_music_choreography,
-/// HDM05 HDM_ACTOR_motion_number.
+/// Performer by the name: CMU numbers its trials SUBJECT_TRIAL, AIST++ has
+/// genre_situation_camera_DANCER_music_choreography, HDM05 HDM_ACTOR_motion_number.
 Origin OriginOf(const std::string& name) {
   static const std::regex cmu(R"((\d{1,3})_(\d{1,3}(\D.*)?|[a-z].*))"), aist(R"(g[A-Z]{2}_s\w\w_c\w+?_(d\d+)_m.*)"),
       hdm05(R"((HDM_[a-z]{2})_.*)");
@@ -75,7 +75,7 @@ Motion OnRegularClock(const Motion& piece, double max_fps) {
   return motion;
 }
 
-/// The motion as it was captured: files may say nothing of their rate, or the wrong thing.
+/// The motion at its capture rate, which files may omit or state wrongly.
 void SetRate(double fps, Motion* motion) {
   for (int t = 0; t < motion->num_frames(); ++t) motion->timestamps[t] = t / fps;
 }
@@ -154,7 +154,7 @@ MotionLibrarySummary VisitMotionLibrary(const std::vector<std::string>& folders,
       std::vector<LibraryClip> clips;
       try {
         clips = ClipsOf(file, name, split, options);
-      } catch (const std::runtime_error& error) {  // licences, skeletons and readmes lie among the motions
+      } catch (const std::runtime_error& error) {  // licences, skeletons and readmes are among the motions
         const std::string reason = error.what(), prefix = file + ": ";
         summary.left_out.emplace_back(name, reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason);
         continue;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A picture of a motion library: stick figures of SMPL's 24 joints at several instants of every clip.
 ///
-/// A clip is a strip with its label: the upper row looks at the person's front, the lower row at the person's left side
-/// (the pelvis' heading at that instant; a person upright walks to the left below). The left limbs are warm, the right
-/// ones cool (render/image/palette.h), so that in the upper row warm is on the right: a mirrored clip shows. The line
-/// is y = 0, drawn where the clip has a flat floor; figures keep their height above it.
+/// A clip is a strip with its label: the upper row shows the person's front, the lower row the left side (by the
+/// pelvis' heading at that instant; an upright person walks to the left in the lower row). The left limbs are warm, the
+/// right ones cool (render/image/palette.h), so warm colours are on the right in the upper row unless a clip is
+/// mirrored. The line is y = 0, drawn if the clip has a flat floor; figures keep their height above it.
 #pragma once
 
 #include <string>
@@ -21,13 +21,12 @@ struct MotionSheetOptions {
   int columns = 2;           ///< strips side by side
 };
 
-/// One clip's strip. Clips that reach higher than 2.2 m are drawn smaller. Needs 24 joints with y up; throws
-/// std::invalid_argument otherwise.
+/// Draws one clip's strip. Clips that reach higher than 2.2 m are drawn smaller. The motion must have 24 joints and y
+/// up; throws std::invalid_argument otherwise.
 Image DrawMotionStrip(const Motion& motion, bool has_floor, const std::string& label,
                       const MotionSheetOptions& options = {});
 
-/// The strips below one another, column by column; they are all of one size. Throws std::invalid_argument when there
-/// are none.
+/// Arranges strips of equal size below one another, column by column. Throws std::invalid_argument when there are none.
 Image MotionSheet(const std::vector<Image>& strips, const MotionSheetOptions& options = {});
 
 }  // namespace bodyloom

@@ -23,7 +23,7 @@ namespace {
 constexpr size_t kMaxSplitBytes = size_t{1} << 26;
 constexpr double kMaxFps = 1000;
 
-/// What is written after train or test; false for anything else.
+/// Parses a word after train or test; false for anything else.
 bool ReadDetail(const std::string& word, MotionSplitEntry* entry) {
   if (word.starts_with("performer=")) {
     entry->performer = word.substr(10);

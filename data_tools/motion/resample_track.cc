@@ -16,7 +16,7 @@ namespace {
 constexpr double kLongestStep = 1.5;   ///< in steps
 constexpr double kSameInstant = 1e-6;  ///< in steps of the new rate
 
-/// What one frame of the result shows: between two frames of the track, or nothing (before = −1).
+/// Source of one frame of the result: between two frames of the track, or none (before = −1).
 struct Instant {
   double time = 0;
   int before = -1, after = -1;
@@ -45,7 +45,7 @@ std::vector<Instant> Plan(const Track& track, double fps) {
     } else if (last_result >= 0 && after < T && times[after] - times[last_result] <= longest) {
       instants.push_back({time, last_result, after, (time - times[last_result]) / (times[after] - times[last_result])});
     } else if (now + 1 < T && times[now + 1] - times[now] > longest) {
-      // The clock jumps: on to the first instant that is not before the next frame.
+      // The timestamps jump: continue with the first instant that is not before the next frame.
       k = std::max(k, static_cast<int64_t>(std::ceil((times[now + 1] - times.front()) * fps - kSameInstant)) - 1);
     } else {
       instants.push_back({time});
@@ -81,7 +81,7 @@ Track ResampleTrack(const Track& track, double fps) {
     out.motion.timestamps.push_back(time);
     out.frame_status.push_back(before < 0 ? FrameStatus::kLost : track.frame_status.at(share < 0.5 ? before : after));
     if (track.HasMovingCamera()) {
-      // Where nothing is known of the person the camera stays where it was.
+      // The camera keeps its last pose while the person is lost.
       out.camera_from_scene.push_back(
           before >= 0 ? InterpolatePoses(track.camera_from_scene.at(before), track.camera_from_scene.at(after), share)
           : t > 0     ? out.camera_from_scene.back()

@@ -36,8 +36,8 @@ enum Smpl {
 };
 
 /// A limb must bend this much on average (sine), and always in nearly the same direction, to determine its twist.
-constexpr double kLeastBend = 0.1;
-constexpr double kLeastCoherence = 0.8;
+constexpr double kMinBend = 0.1;
+constexpr double kMinCoherence = 0.8;
 /// A limb whose rest pose bends less than this (sine) is straight at rest; bending is counted from there.
 constexpr double kStraight = 0.2;
 
@@ -130,15 +130,15 @@ class Retargeter {
     limb.ankle = limb.knee * RotationFromAxisAngle(Vector3d::UnitY() * turn);
   }
 
-  /// The turn about the upper bone after which the lower one bends about SMPL's natural hinge (an axis of SMPL's rest
-  /// frame), from the sum of bends over the clip against that of SMPL's limb bent by the same angles; identity when the
-  /// limb hardly bends or bends all ways.
+  /// The rotation about the upper bone after which the lower one bends about SMPL's natural hinge (an axis of SMPL's
+  /// rest frame), from the sum of bends over the clip against that of SMPL's limb bent by the same angles; identity if
+  /// the limb hardly bends or has no consistent direction of bending.
   [[nodiscard]] Matrix3d BendTwist(const std::array<int, 3>& source, const std::array<int, 3>& smpl,
                                    const Matrix3d& alignment, const Vector3d& hinge, double* twist_deg) const {
     const Vector3d axis = SmplBone(smpl[0], smpl[1]).normalized(), lower = SmplBone(smpl[1], smpl[2]).normalized();
     const auto across = [&](const Vector3d& v) -> Vector3d { return v - v.dot(axis) * axis; };
-    // Where the lower bone is when the limb counts as straight: its rest direction (legs bend sideways at the knee by a
-    // few degrees, which is no bending), or the upper bone's when the source rests with bent limbs.
+    // Direction of the lower bone of a straight limb: its rest direction (legs deviate sideways at the knee by a few
+    // degrees without bending), or the upper bone's if the source rests with bent limbs.
     const Vector3d at_rest = alignment.transpose() * SourceBone(source[1], source[2]).normalized();
     const bool is_straight = across(at_rest).norm() < kStraight;
     const Vector3d straight = is_straight ? at_rest : axis;
@@ -154,11 +154,10 @@ class Retargeter {
       expected += across(RotationFromAxisAngle(hinge * angle) * lower - (is_straight ? lower : axis));
       weight += bend.norm();
     }
-    if (weight < kLeastBend * source_.num_frames() || sum.norm() < kLeastCoherence * weight)
-      return Matrix3d::Identity();
+    if (weight < kMinBend * source_.num_frames() || sum.norm() < kMinCoherence * weight) return Matrix3d::Identity();
     const double twist = std::atan2(axis.dot(sum.cross(expected)), sum.dot(expected));
     *twist_deg = twist * 180 / M_PI;
-    // The limb turns so that what the source does falls where SMPL's hinge does: A ← A·exp(−twist·axis).
+    // Rotates the limb so that the source's bending agrees with SMPL's hinge: A ← A·exp(−twist·axis).
     return RotationFromAxisAngle(axis * -twist);
   }
 
@@ -202,8 +201,8 @@ class Retargeter {
     return world;
   }
 
-  /// Turns the forearm by ½ sin(τ), τ the hand's twist about it: half of a small twist, and steady where τ jumps from
-  /// 180° to −180° (noisy wrists do).
+  /// Turns the forearm by ½ sin(τ), τ the hand's twist about it: half of a small twist, and continuous where τ jumps
+  /// from 180° to −180° (as with noisy wrists).
   static void ShareTwist(int side, Matrix3d* forearm, const Matrix3d& hand) {
     const Vector3d axis = SmplBone(kElbow + side, kWrist + side).normalized();
     const Eigen::Quaterniond relative(forearm->transpose() * hand);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The joint map of a foreign skeleton: which of its joints are a person's hips, knees, elbows, …
+/// Joint map of a foreign skeleton: identifies its hips, knees, elbows, …
 ///
 /// Knees, ankles, toes, elbows, wrists and the head are found by name (the vocabularies of CMU, Mixamo, Acclaim, Biped,
-/// DeepMimic, AMP, SMPL); the rest by topology, because names of the rest disagree between vocabularies ("LeftShoulder"
-/// is a clavicle in one and an upper arm in the other): a shoulder is what an elbow hangs on, a hip what a knee hangs
-/// on, the chest is where the two arms meet, the pelvis where the two legs meet.
+/// DeepMimic, AMP, SMPL); the rest by topology, because their names differ between vocabularies ("LeftShoulder" is a
+/// clavicle in one and an upper arm in another): a shoulder is an elbow's parent, a hip a knee's parent, the chest is
+/// where the two arms meet, the pelvis where the two legs meet.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@
 
 namespace bodyloom {
 
-/// Indices into the skeleton's joints; −1 where it has none. Sides: 0 left, 1 right.
+/// Indices into the skeleton's joints; −1 for missing ones. Sides: 0 left, 1 right.
 struct SkeletonMap {
   int pelvis = -1;
   std::array<int, 2> hip{-1, -1}, knee{-1, -1}, ankle{-1, -1}, toe{-1, -1};
@@ -28,7 +28,7 @@ struct SkeletonMap {
   Eigen::Matrix3d file_from_body = Eigen::Matrix3d::Identity();
 };
 
-/// Throws std::runtime_error beginning with `where` that names what was not found and the joints present.
+/// Throws std::runtime_error beginning with `where` that names the missing joint and those present.
 SkeletonMap MapSkeleton(const SkeletonMotion& motion, const std::string& where);
 
 }  // namespace bodyloom

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A motion as capture files hold it: any skeleton, joint rotations frame by frame, the file's own units and axes.
+/// A motion of an arbitrary skeleton, as in capture files: joint rotations of each frame, in the file's units and axes.
 ///
-/// The rest pose has every joint frame parallel to the file's axes: joint j sits at Σ offsets along its chain. In frame
-/// t
+/// The rest pose has every joint frame parallel to the file's axes: joint j is at Σ offsets along its chain. In frame t
 ///   world_rotation_j = world_rotation_parent · rotation_j,
 ///   world_position_j = world_position_parent + world_rotation_parent · offset_j.
 #pragma once
@@ -26,12 +25,12 @@ struct SkeletonMotion {
 
   [[nodiscard]] int num_joints() const { return static_cast<int>(parents.size()); }
   [[nodiscard]] int num_frames() const { return static_cast<int>(timestamps.size()); }
-  /// Index by exact name, −1 when absent.
+  /// Returns the index of an exact name, −1 when absent.
   [[nodiscard]] int FindJoint(const std::string& name) const;
 };
 
-/// Readers refuse motions of more joint rotations (frames × joints) than this: 2 GB, two hours of 31 joints at 120 Hz.
-inline constexpr size_t kMostRotations = 30'000'000;
+/// Maximum number of joint rotations (frames × joints) that readers accept: 2 GB, two hours of 31 joints at 120 Hz.
+inline constexpr size_t kMaxRotations = 30'000'000;
 
 /// J×3 joint positions of the rest pose, root at the origin.
 MatrixX3d RestPositions(const SkeletonMotion& motion);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Joint positions of the built-in body's mean shape in its T-pose: what SMPL's joint rotations are relative to. Other
-/// bodies of the family differ by a few degrees in bone direction.
+/// Joint positions of the built-in body's mean shape in T-pose, the zero of SMPL's joint rotations. Bone directions of
+/// other bodies of the family differ by a few degrees.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,8 +20,8 @@ MatrixX3d PoseSmplJoints(const Eigen::Ref<const Eigen::VectorXd>& pose, const Ei
 /// The same for every frame of a motion of 24 joints with y up; the pelvis is at `trans`.
 std::vector<MatrixX3d> PoseSmplJoints(const Motion& motion);
 
-/// Bending of the hinge joints out of the straight limb, degrees, positive the way people bend: left knee, right knee,
-/// left elbow, right elbow. Measured in the plane of natural flexion (shin backwards, T-pose forearm forwards).
+/// Flexion of the hinge joints from the straight limb, degrees, positive in the natural direction: left knee, right
+/// knee, left elbow, right elbow. Measured in the plane of natural flexion (shin backwards, T-pose forearm forwards).
 Eigen::Vector4d HingeFlexionDeg(const Eigen::Ref<const Eigen::VectorXd>& pose);
 
 }  // namespace bodyloom

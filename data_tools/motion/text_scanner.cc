@@ -71,7 +71,7 @@ double TextScanner::Number(const std::string& expected) {
   if (begin != end && *begin == '+') ++begin;
   double value = 0;
   const auto [stop, error] = std::from_chars(begin, end, value);
-  // 1e-400 is zero; from_chars leaves the value alone and does not say in which direction it is out of range.
+  // 1e-400 is zero; from_chars does not set the value and does not distinguish overflow from underflow.
   const bool is_tiny = error == std::errc::result_out_of_range && word.find_first_of("eE") != std::string_view::npos &&
                        word[word.find_first_of("eE") + 1] == '-';
   if ((error != std::errc() && !is_tiny) || stop != end || !std::isfinite(value)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Whitespace-separated words and numbers of a text file, with line numbers in every error; and the file itself,
-/// gzipped or not. Used by the motion formats that are text (BVH, ASF, AMC).
+/// Scanner for whitespace-separated words and numbers of a text file, plain or gzipped, with line numbers in errors.
+/// Used by the text formats of motions (BVH, ASF, AMC).
 #pragma once
 
 #include <string>
@@ -15,13 +15,14 @@ std::string ReadTextFile(const std::string& path, size_t max_bytes = size_t{1} <
 /// Errors are std::runtime_error "where: line N: found 'x', expected y".
 class TextScanner {
  public:
-  /// `text` must outlive the scanner. A word that starts with `comment` hides the rest of its line ('\0': none).
+  /// `text` must outlive the scanner. A word that starts with `comment` makes the rest of its line a comment ('\0':
+  /// none).
   TextScanner(std::string_view text, std::string where, char comment = '\0')
       : text_(text), where_(std::move(where)), comment_(comment) {}
 
-  /// The next word without taking it; empty at the end.
+  /// Returns the next word without taking it; empty at the end.
   [[nodiscard]] std::string_view Peek();
-  /// Takes a word; at the end of the text this is an error naming what was expected.
+  /// Takes a word; the end of the text is an error that names what was expected.
   std::string_view Word(const std::string& expected);
   /// Takes exactly this word.
   void Expect(std::string_view word);

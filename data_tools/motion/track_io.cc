@@ -257,7 +257,7 @@ class TrackReader {
     std::copy(distortion.begin(), distortion.end(), track_.camera.distortion.begin());
   }
 
-  /// 16 numbers by rows.
+  /// 16 numbers in row-major order.
   [[nodiscard]] CameraPose RigidMotion(const double* numbers, const std::string& name) const {
     const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers);
     CameraPose pose{matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};

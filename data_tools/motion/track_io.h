@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Track files: one .npz that AMASS readers understand and that is enough to evaluate a track without this project.
+/// Track files: one .npz that AMASS readers understand and that suffices to evaluate a track without this project.
 ///
 /// T frames of a body with J joints; metres, camera frame (x right, y down, z forward), radians, seconds:
 ///   poses T×3J axis-angle    trans T×3      betas B        gender 'neutral'   mocap_framerate 1 / median time step
@@ -10,24 +10,22 @@
 ///   image_size [width, height], pixels      camera T×3     (s, tx, ty), only with 'weak':
 ///                                                          pixel = s·(X + tx, Y + ty) + (cx, cy), s in pixels a metre,
 ///                                                          cx and cy from K
-///   camera_from_scene T×4×4  [R t; 0 0 0 1] of each frame, only where the camera moves: poses, trans, joints and
-///   coco17
-///                          are then in a scene that stands still (geometry/scene/camera_path.h), and what is projected
-///                          is R · point in the scene + t; world_from_camera is then of the scene
+///   camera_from_scene T×4×4  [R t; 0 0 0 1] of each frame, only if the camera moves: poses, trans, joints and coco17
+///                          are then in a static scene (geometry/scene/camera_path.h), and points are projected as
+///                          R · point in the scene + t; world_from_camera is then of the scene
 ///   world_from_camera 4×4  [R t; 0 0 0 1]: a point of the clip's world (y up, the ground at y = 0, the camera above
-///   the
-///                          origin and heading for −z; geometry/scene/world_frame.h) is R · point in the camera frame +
-///                          t
-///   world_source           how it was found: 'ground', 'several people', 'vertical', 'given', 'level camera assumed'
-///   world_sigma [degrees of the vertical, metres of the ground's height]: standard deviations (NaN: unknown)
-/// Files without the world members are of a track that does not say. Theirs is 'given' when only world_from_camera is.
-/// There is no `camera` member for a pinhole camera: K and trans say everything.
+///                          the origin and heading for −z; geometry/scene/world_frame.h) is R · point in the camera
+///                          frame + t
+///   world_source           source: 'ground', 'several people', 'vertical', 'given', 'level camera assumed'
+///   world_sigma            [degrees of the vertical, metres of the ground's height]: standard deviations, NaN: unknown
+/// Files without the world members have no world frame. If only world_from_camera exists, its source is 'given'. There
+/// is no `camera` member for a pinhole camera: K and trans suffice.
 ///
-/// The reader also takes tracks that others wrote. Needed are poses, trans and a camera (K, or camera T×3); without
-/// timestamps they follow from mocap_framerate or mocap_frame_rate, else 30 frames a second are assumed; betas may be
-/// T×B (their mean is taken); K may be T×3×3 when all frames agree; distortion may have 4, 5 or 8 values; frames whose
-/// pose or trans is NaN count as lost; `body` follows from the number of columns (72 smpl, 156 smplh, 165 smplx); an
-/// image_size of 0×0 says that the file does not tell.
+/// The reader also accepts tracks of other programs. Required are poses, trans and a camera (K, or camera T×3); missing
+/// timestamps follow from mocap_framerate or mocap_frame_rate, else 30 frames per second are assumed; betas may be T×B
+/// (their mean is taken); K may be T×3×3 when all frames agree; distortion may have 4, 5 or 8 values; frames whose pose
+/// or trans is NaN count as lost; `body` follows from the number of columns (72 smpl, 156 smplh, 165 smplx); an
+/// image_size of 0×0 means unknown.
 #pragma once
 
 #include <string>
@@ -41,8 +39,8 @@ namespace bodyloom {
 /// std::runtime_error when the file cannot be written.
 void WriteTrack(const std::string& path, const Track& track);
 
-/// Whether a reader's caller takes a track whose camera moves for what it is. Who does not would draw it at wrong
-/// places or take the camera's motion for the person's.
+/// Support of a reader's caller for tracks with a moving camera. Without it they would be drawn at wrong positions, or
+/// the camera's motion taken for the person's.
 enum class MovingCamera {
   kRefuse,
   kTake,

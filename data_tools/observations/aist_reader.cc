@@ -15,7 +15,7 @@ namespace bodyloom {
 namespace {
 
 constexpr double kMicrosecond = 1e-6;
-constexpr int64_t kMostViews = 99;  ///< names have two digits
+constexpr int64_t kMaxViews = 99;  ///< names have two digits
 
 std::string ViewName(int64_t index) {
   char name[16];
@@ -26,7 +26,7 @@ std::string ViewName(int64_t index) {
 int64_t FindView(const std::string& view, int64_t num_views, const std::string& where) {
   if (view.empty() && num_views == 1) return 0;
   std::vector<std::string> present;
-  for (int64_t v = 0; v < std::min(num_views, kMostViews); ++v) {
+  for (int64_t v = 0; v < std::min(num_views, kMaxViews); ++v) {
     if (ViewName(v) == view) return v;
     present.push_back(ViewName(v));
   }
@@ -84,7 +84,7 @@ KeypointSequence AistKeypoints2dFromPickle(const PickleValue& file, const std::s
     sequence.points[i] = {x, y, std::min(score, 1.0F)};
     any = true;
   }
-  if (!any) throw NothingToTrack(where + ": nobody was detected in view " + ViewName(v));
+  if (!any) throw NoPersonFound(where + ": nobody was detected in view " + ViewName(v));
   return sequence;
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// BlazePose / MediaPipe landmarks as programs dump them to JSON: a list of frames, each of which is
+/// Reads BlazePose / MediaPipe landmarks from JSON dumps: a list of frames, each of which is
 ///   [[x, y, z], …]·33 or [{"x", "y", "z", "visibility", "presence", "name"}, …]·33 (17 entries: COCO),
 ///   {"nose": {"x", "y", "score"}, …} by landmark name,
 ///   {"keypoints" or "landmarks" or "pose_landmarks": either list, "score"}, or a list of such objects (several
 ///   people), null or an empty list when nobody was found.
-/// A top-level object with "frames" holds such a list too.
+/// A top-level object with "frames" may hold this list.
 ///
-/// x and y are pixels or fractions of the image (told apart by load_detections.h, which knows the image size). z is
-/// relative depth and is not used. visibility and presence may be probabilities or logits: when one value of the file
-/// lies outside [0, 1], all are logits. Without either, a landmark counts as seen with confidence 1.
+/// x and y are pixels or fractions of the image (distinguished by load_detections.h, where the image size is known). z
+/// is relative depth and is not used. visibility and presence may be probabilities or logits: when one value of the
+/// file lies outside [0, 1], all are logits. Without either, a landmark has confidence 1.
 /// Source: MediaPipe pose landmarker docs, tfjs-models pose-detection README.
 #pragma once
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// COCO keypoints: a results list [{"image_id", "category_id": 1, "keypoints": [x, y, c]·17, "score"}] as written by
-/// most detectors and by AlphaPose, or an annotation table {"images": […], "annotations": […]}.
+/// COCO keypoints: a results list [{"image_id", "category_id": 1, "keypoints": [x, y, c]·17, "score"}] as from most
+/// detectors and AlphaPose, or an annotation table {"images": […], "annotations": […]}.
 ///
 /// image_id is a number or a file name; its number is the frame. Several entries with one image_id are several people.
 /// AlphaPose's "idx" and PoseTrack's "track_id" are identities. Confidences above 1 (AlphaPose) count as 1; in
-/// annotations the third value is a flag: 0 missing, 1 labelled but hidden (confidence 0.5), 2 visible (1). 17, 23, 26,
-/// 133 (COCO-WholeBody) and 136 (Halpe) landmarks are read; face and hands are left out.
+/// annotations the third value is a flag: 0 missing, 1 labelled but hidden (confidence 0.5), 2 visible (confidence 1).
+/// 17, 23, 26, 133 (COCO-WholeBody) and 136 (Halpe) landmarks are read; face and hands are left out.
 /// Source: cocodataset.org/#format-data, AlphaPose, "Output format".
 #pragma once
 

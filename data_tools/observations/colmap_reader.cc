@@ -105,12 +105,12 @@ ColmapImage MakeColmapImage(const std::string& place, const std::array<double, 7
   return image;
 }
 
-/// Lines of a text that are no comments, with their numbers.
+/// Lines of a text that are not comments, with their numbers.
 class ColmapLines {
  public:
   ColmapLines(const std::string& text, std::string where) : stream_(text), where_(std::move(where)) {}
 
-  /// The next line; with `may_be_empty` false the next that holds something.
+  /// The next line; with `may_be_empty` false, the next non-empty one.
   bool Next(bool may_be_empty) {
     while (std::getline(stream_, line_)) {
       ++number_;
@@ -227,7 +227,7 @@ std::vector<ColmapImage> ColmapImagesFromText(const std::string& text, const std
     }
     images.push_back(MakeColmapImage(lines.place(), q_t, camera_id, name));
     if (!lines.Next(true)) continue;
-    // A writer that leaves the line out would have every second image taken for points.
+    // Without this check, a file without those lines would have every second image read as points.
     std::istringstream points(lines.line());
     const auto words = std::distance(std::istream_iterator<std::string>(points), {});
     if (words % 3 != 0) {
@@ -272,7 +272,7 @@ ColmapModel ReadColmapModel(const std::string& folder_or_images) {
   ColmapModel model;
   model.images =
       is_binary ? ColmapImagesFromBytes(bytes, images.string()) : ColmapImagesFromText(bytes, images.string());
-  if (model.images.empty()) FailColmap(images.string(), "no image, expected the poses of a clip's pictures");
+  if (model.images.empty()) FailColmap(images.string(), "no image, expected the poses of a clip's images");
   const fs::path cameras = images.parent_path() / (is_binary ? "cameras.bin" : "cameras.txt");
   if (!fs::exists(cameras, ignored)) return model;
   const std::string camera_bytes = ReadFileBytes(cameras.string());

@@ -13,14 +13,14 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kMostPart = 24;
-constexpr size_t kMostFileBytes = size_t{1} << 28;
-constexpr size_t kMostIuvPixels = size_t{1} << 26;
+constexpr int kMaxPart = 24;
+constexpr size_t kMaxIuvBytes = size_t{1} << 28;
+constexpr size_t kMaxIuvPixels = size_t{1} << 26;
 
-/// Checks what decides whether a PNG's bytes are labels: anything but 8 bits would be rescaled. And the frame of chunks
-/// with their checksums, so that a damaged file is reported by place and never reaches the decoder, which would print.
+/// Checks that a PNG has 8 bits, as other depths would be rescaled, and the chunks with their checksums, so that a
+/// damaged file is reported with its location and never reaches the decoder, which would print.
 void CheckPng(const std::string& path, bool needs_colour) {
-  const std::string bytes = ReadFileBytes(path, kMostFileBytes);
+  const std::string bytes = ReadFileBytes(path, kMaxIuvBytes);
   const auto byte = [&](size_t i) { return size_t{static_cast<unsigned char>(bytes[i])}; };
   const auto number = [&](size_t i) { return byte(i) << 24 | byte(i + 1) << 16 | byte(i + 2) << 8 | byte(i + 3); };
   if (bytes.size() < 33 || bytes.compare(0, 8, "\x89PNG\r\n\x1a\n") != 0 || bytes.compare(12, 4, "IHDR") != 0) {
@@ -32,9 +32,9 @@ void CheckPng(const std::string& path, bool needs_colour) {
     throw std::runtime_error(path + ": " + std::to_string(depth) + " bits a channel, " + (is_grey ? "grey" : "colour") +
                              "; expected 8-bit" + (needs_colour ? " colour (I, U, V)" : ""));
   }
-  if (number(16) == 0 || number(20) == 0 || number(16) * number(20) > kMostIuvPixels) {
+  if (number(16) == 0 || number(20) == 0 || number(16) * number(20) > kMaxIuvPixels) {
     throw std::runtime_error(path + ": " + std::to_string(number(16)) + "x" + std::to_string(number(20)) +
-                             " pixels, expected 1 to " + std::to_string(kMostIuvPixels));
+                             " pixels, expected 1 to " + std::to_string(kMaxIuvPixels));
   }
   for (size_t at = 8;;) {  // chunks: length, type, data, checksum of type and data
     if (bytes.size() - at < 12 || number(at) > bytes.size() - at - 12) {
@@ -56,16 +56,16 @@ void CheckPng(const std::string& path, bool needs_colour) {
 IuvImage ReadIuvImage(const std::string& path, IuvOrder order) {
   CheckPng(path, /*needs_colour=*/true);
   const Image image = ReadImage(path);
-  int most_blue = 0, most_red = 0;
+  int max_blue = 0, max_red = 0;
   for (size_t i = 0; i < image.bgr.size(); i += 3) {
-    most_blue = std::max(most_blue, int{image.bgr[i]});
-    most_red = std::max(most_red, int{image.bgr[i + 2]});
+    max_blue = std::max(max_blue, int{image.bgr[i]});
+    max_red = std::max(max_red, int{image.bgr[i + 2]});
   }
-  const bool could_be_blue = most_blue <= kMostPart, could_be_red = most_red <= kMostPart;
+  const bool could_be_blue = max_blue <= kMaxPart, could_be_red = max_red <= kMaxPart;
   const bool is_blue = order == IuvOrder::kBlueIsPart || (order == IuvOrder::kDetect && could_be_blue);
   if (is_blue ? !could_be_blue : !could_be_red) {
-    throw std::runtime_error(path + ": blue reaches " + std::to_string(most_blue) + " and red " +
-                             std::to_string(most_red) + ", expected parts 0 to 24 in " +
+    throw std::runtime_error(path + ": blue reaches " + std::to_string(max_blue) + " and red " +
+                             std::to_string(max_red) + ", expected parts 0 to 24 in " +
                              (order == IuvOrder::kDetect ? "one of them"
                               : is_blue                  ? "blue"
                                                          : "red"));

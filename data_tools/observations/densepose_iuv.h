@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// DensePose's IUV images: one PNG a frame, for every pixel the body part I (1..24, 0: background) and the chart
-/// coordinates U, V in [0, 1] as 8-bit integers, rounded down.
+/// Reads DensePose's IUV images: one PNG per frame with, for every pixel, the body part I (1..24, 0: background) and
+/// the chart coordinates U, V in [0, 1] as 8-bit integers, rounded down.
 ///
-/// Two channel orders are in the wild. The original program wrote B=I, G=U, R=V (OpenCV's order of an array I,U,V);
-/// others store R=I, G=U, B=V. They are told apart by their values: I never exceeds 24. Beside "<image>_IUV.png" there
-/// may be "<image>_INDS.png", whose pixels number the people from 1. Source: facebookresearch/DensePose, vis.py and
-/// notebooks; detectron2 DensePose, chart results.
+/// Two channel orders are in use. The original program wrote B=I, G=U, R=V (OpenCV's order of an array I,U,V); others
+/// store R=I, G=U, B=V. They are distinguished by value: I never exceeds 24. Beside "<image>_IUV.png" there may be
+/// "<image>_INDS.png", whose pixels number the people from 1. Source: facebookresearch/DensePose, vis.py and notebooks;
+/// detectron2 DensePose, chart results.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ enum class IuvOrder { kDetect, kBlueIsPart, kRedIsPart };
 struct IuvImage {
   int width = 0, height = 0;
   std::vector<uint8_t> part, u, v;
-  IuvOrder order = IuvOrder::kDetect;  ///< as found; kDetect when the image is empty and does not decide
+  IuvOrder order = IuvOrder::kDetect;  ///< as detected; kDetect if the image is empty and leaves it open
 };
 
 /// Throws std::runtime_error naming the file: not a PNG of 8-bit colour, or no channel (or not the chosen one) holds

@@ -14,8 +14,8 @@
 namespace bodyloom {
 namespace {
 
-constexpr int64_t kMostNumbers = 1'000'000;
-constexpr size_t kMostDigits = 15;
+constexpr int64_t kMaxNumbers = 1'000'000;
+constexpr size_t kMaxDigits = 15;
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
@@ -33,7 +33,7 @@ int64_t FrameNumberFromName(const std::string& file_name) {
   size_t begin = end;
   while (begin > 0 && IsDigit(stem[begin - 1])) --begin;
   while (begin < end && stem[begin] == '0' && end - begin > 1) ++begin;
-  if (begin == end || end - begin > kMostDigits) return -1;
+  if (begin == end || end - begin > kMaxDigits) return -1;
   return std::stoll(stem.substr(begin, end - begin));
 }
 
@@ -62,10 +62,10 @@ FrameGrid MakeFrameGrid(const std::vector<int64_t>& numbers, double fps, const s
   }
   step = std::max<int64_t>(1, step);
   const int64_t num_frames = (sorted.back() - sorted.front()) / step + 1;
-  if (num_frames > kMostNumbers) {
+  if (num_frames > kMaxNumbers) {
     throw std::runtime_error(where + ": frame numbers " + std::to_string(sorted.front()) + " to " +
                              std::to_string(sorted.back()) + " span " + std::to_string(num_frames) +
-                             " frames, at most " + std::to_string(kMostNumbers) + " are read");
+                             " frames, at most " + std::to_string(kMaxNumbers) + " are read");
   }
   grid.index.reserve(numbers.size());
   for (const int64_t number : numbers) grid.index.push_back(static_cast<int>((number - sorted.front()) / step));

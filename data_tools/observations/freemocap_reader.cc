@@ -10,15 +10,15 @@
 namespace bodyloom {
 namespace {
 
-constexpr int64_t kMostFreeMocapFrames = 1'000'000, kFreeMocapRtmPosePoints = 133;
+constexpr int64_t kMaxFreeMocapFrames = 1'000'000, kFreeMocapRtmPosePoints = 133;
 
 int64_t FindCamera(const std::string& view, int64_t num_cameras, const std::string& where) {
   if (view.empty() && num_cameras == 1) return 0;
   for (int64_t c = 0; c < num_cameras && c < 1000; ++c) {
     if (std::to_string(c) == view) return c;
   }
-  Refuse(where, Concatenate(view.empty() ? "no view chosen" : "no view '" + PrintableText(view) + "'",
-                            "; the file has ", num_cameras, " cameras, 0 to ", num_cameras - 1, " (--view 0)"));
+  ThrowFileError(where, Concatenate(view.empty() ? "no view chosen" : "no view '" + PrintableText(view) + "'",
+                                    "; the file has ", num_cameras, " cameras, 0 to ", num_cameras - 1, " (--view 0)"));
 }
 
 }  // namespace
@@ -26,25 +26,27 @@ int64_t FindCamera(const std::string& view, int64_t num_cameras, const std::stri
 KeypointSequence FreeMocapFromArray(const NdArray& array, const std::string& where, const std::string& view,
                                     double fps) {
   const char* expected = "expected FreeMoCap's 2D landmarks, cameras x frames x points x 2";
-  if (!array.is_number()) Refuse(where, std::string("an array without numbers, ") + expected);
+  if (!array.is_number()) ThrowFileError(where, std::string("an array without numbers, ") + expected);
   const size_t rank = array.shape.size();
   if (rank == 3 && array.shape[2] == 3) {
-    Refuse(where, Concatenate("an array of ", array.ShapeText(), ": 3D points, which are no detections of one camera; ",
-                              expected, " (raw_data/…2dData…)"));
+    ThrowFileError(
+        where, Concatenate("an array of ", array.ShapeText(), ": 3D points, which are no detections of one camera; ",
+                           expected, " (raw_data/…2dData…)"));
   }
   const bool has_cameras = rank == 4 && (array.shape[3] == 2 || array.shape[3] == 3);
   if (!has_cameras && !(rank == 3 && array.shape[2] == 2)) {
-    Refuse(where, Concatenate("an array of ", array.ShapeText(), ", ", expected));
+    ThrowFileError(where, Concatenate("an array of ", array.ShapeText(), ", ", expected));
   }
   const size_t first = has_cameras ? 1 : 0;
   const int64_t num_cameras = has_cameras ? array.shape[0] : 1, num_frames = array.shape[first],
                 num_points = array.shape[first + 1], per_point = array.shape[first + 2];
   const KeypointConvention& convention = num_points == kFreeMocapRtmPosePoints ? CocoWholeBody23() : MediaPipe33();
   if (num_points < static_cast<int64_t>(convention.names.size())) {
-    Refuse(where, Concatenate(num_points, " points, expected MediaPipe's 33 or more, or RTMPose's 133"));
+    ThrowFileError(where, Concatenate(num_points, " points, expected MediaPipe's 33 or more, or RTMPose's 133"));
   }
-  if (num_frames < 1 || num_frames > kMostFreeMocapFrames || num_cameras < 1) {
-    Refuse(where, Concatenate("an array of ", array.ShapeText(), ", expected 1 to ", kMostFreeMocapFrames, " frames"));
+  if (num_frames < 1 || num_frames > kMaxFreeMocapFrames || num_cameras < 1) {
+    ThrowFileError(where,
+                   Concatenate("an array of ", array.ShapeText(), ", expected 1 to ", kMaxFreeMocapFrames, " frames"));
   }
   const int64_t camera = FindCamera(view, num_cameras, where);
   const std::vector<double> values = array.ToDoubles();

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// FreeMoCap's 2D landmarks: output_data/raw_data/<detector>_2dData_numCams_numFrames_numTrackedPoints_pixelXY.npy, an
-/// array cameras × frames × points × 2 of pixels, NaN where nothing was seen; or one camera of it, frames × points × 2.
+/// Reads FreeMoCap's 2D landmarks:
+/// output_data/raw_data/<detector>_2dData_numCams_numFrames_numTrackedPoints_pixelXY.npy, an array cameras × frames ×
+/// points × 2 of pixels, NaN where nothing was detected; or one camera of it, frames × points × 2.
 ///
 /// 133 points are RTMPose's (COCO-WholeBody); any other number from 33 on begins with MediaPipe's 33 of the body (its
-/// holistic tracker has 543 or 553, hands and face behind them). There are no confidences: what is seen counts as 1.
-/// Some versions have a third number a point, a confidence or a depth: it is not read. FreeMoCap's 3D
-/// (frames × points × 3, millimetres, triangulated from all cameras in a world of its own) is no detection and refused.
-/// Source: freemocap/freemocap, data_layer/recording_models; skellytracker; a file's own name says its shape.
+/// holistic tracker has 543 or 553, hands and face behind them). There are no confidences: detected points get 1. Some
+/// versions have a third number per point, a confidence or a depth: it is ignored. FreeMoCap's 3D
+/// (frames × points × 3, millimetres, triangulated from all cameras in its own world) is not a detection and refused.
+/// Source: freemocap/freemocap, data_layer/recording_models; skellytracker; the file's name states its shape.
 #pragma once
 
 #include <string>

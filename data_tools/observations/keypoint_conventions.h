@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The orders in which detectors list their landmarks, in one vocabulary.
+/// Landmark orders of detectors, in one vocabulary.
 ///
-/// Landmarks that a body has (COCO's 17, toes and heels) carry the body's names everywhere; others (neck, mid_hip,
-/// head_top, …) have names of their own and constrain nothing unless a body brings them. Left and right are the
-/// person's. Sources: OpenPose doc/02_output.md and poseParameters.cpp (BODY_25, BODY_25B, COCO-18), COCO and
-/// COCO-WholeBody, Halpe-FullBody, MediaPipe pose_landmark.
+/// Landmarks of bodies (COCO's 17, toes and heels) have the body's names in all conventions; others (neck, mid_hip,
+/// head_top, …) have their own names and constrain nothing unless a body has them. Left and right are the person's.
+/// Sources: OpenPose doc/02_output.md and poseParameters.cpp (BODY_25, BODY_25B, COCO-18), COCO and COCO-WholeBody,
+/// Halpe-FullBody, MediaPipe pose_landmark.
 #pragma once
 
 #include <string>
@@ -19,17 +19,17 @@ struct KeypointConvention {
 
 /// COCO's 17 (CocoNames()).
 const KeypointConvention& Coco17();
-/// OpenPose's 25: neck and mid-hip, eyes, ears, three foot points a side.
+/// OpenPose's 25: neck and mid-hip, eyes, ears, three foot points per side.
 const KeypointConvention& Body25();
-/// OpenPose's experimental 25B: COCO's 17, upper_neck, head_top, three foot points a side.
+/// OpenPose's experimental 25B: COCO's 17, upper_neck, head_top, three foot points per side.
 const KeypointConvention& Body25B();
 /// OpenPose's 18: COCO with a neck, right side first.
 const KeypointConvention& OpenPoseCoco18();
-/// COCO-WholeBody's first 23 of 133: COCO's 17 and three foot points a side (face and hands are not read).
+/// COCO-WholeBody's first 23 of 133: COCO's 17 and three foot points per side (face and hands are not read).
 const KeypointConvention& CocoWholeBody23();
-/// Halpe's 26 (also the first 26 of its 136): COCO's 17, head_top, neck, mid_hip, three foot points a side.
+/// Halpe's 26 (also the first 26 of its 136): COCO's 17, head_top, neck, mid_hip, three foot points per side.
 const KeypointConvention& Halpe26();
-/// BlazePose's 33. Its "foot index" is the tip of the foot and stands for the big toe (about 2 cm away).
+/// BlazePose's 33. Its "foot index" is the tip of the foot and is used as the big toe (about 2 cm away).
 const KeypointConvention& MediaPipe33();
 
 /// The convention of COCO's family with that many landmarks: 17, 23 or 133 (whole body), 26 or 136 (Halpe), of which

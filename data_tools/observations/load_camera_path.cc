@@ -28,7 +28,7 @@ constexpr double kUnitTolerance = 1e-2;
 
 // ---- COLMAP ----
 
-/// The last run of digits in a picture's name without its extension; −1: there is none, or it is no frame's number.
+/// The last run of digits in an image's name without its extension; −1: there is none, or it is not a frame number.
 int NumberInName(const std::string& name) {
   const std::string stem = fs::path(name).stem().string();
   const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
@@ -46,7 +46,7 @@ void TakeColmapCamera(const ColmapModel& model, RecordedCameraPath* path) {
   for (const ColmapImage& image : model.images) used.insert(image.camera_id);
   const auto found = model.cameras.find(*used.begin());
   if (used.size() > 1) {
-    path->why_no_camera = Concatenate("its pictures are of ", used.size(), " cameras");
+    path->why_no_camera = Concatenate("its images are of ", used.size(), " cameras");
   } else if (found == model.cameras.end()) {
     path->why_no_camera = "no cameras file beside it tells the intrinsics";
   } else if (!found->second.is_pinhole) {

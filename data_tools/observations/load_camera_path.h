@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The path of a camera that moves, from files.
+/// Loads the path of a moving camera from files.
 ///
-/// 1. COLMAP (colmap_reader.h): a folder with images.bin or images.txt, or such a file. Its pictures are the clip's
+/// 1. COLMAP (colmap_reader.h): a folder with images.bin or images.txt, or such a file. Its images are the clip's
 ///    frames by the last number in their names ("frame_000012.png": 12), or by their sorted names where names have no
 ///    number or two the same. Its scale is unknown.
 /// 2. This project's JSON, metres:
 ///      "camera_path"  1, the form's version
-///      "fps"          optional: the frame numbers below count so many a second; without it they are the clip's frames
-///      "frames"       a list, in rising order, of
+///      "fps"          optional rate of the frame numbers below; without it they are the clip's frames
+///      "frames"       a list, in increasing order, of
 ///        "frame"        a whole number from 0, or "time": seconds on the clip's clock (one kind in a file)
 ///        "rotation"     camera from world: 3×3, or Rodrigues 3, radians;  or  "quaternion" [w, x, y, z]
 ///        "translation"  camera from world, 3 metres
 ///      "camera"       optional intrinsics, as in load_cameras.h's form 3 (without a pose)
-///    camera from world: x_camera = R x_world + t, camera axes x right, y down, z forward; the world is anybody's that
-///    stands still.
+///    camera from world: x_camera = R x_world + t, camera axes x right, y down, z forward; the world may be any
+///    static frame.
 #pragma once
 
 #include <optional>
@@ -28,13 +28,13 @@ namespace bodyloom {
 
 struct RecordedCameraPath {
   std::vector<CameraPose> poses;  ///< N ≥ 1, camera from world
-  std::vector<int> frames;        ///< N, rising: their frames; empty: `seconds` says when
-  std::vector<double> seconds;    ///< N, rising; or empty
+  std::vector<int> frames;        ///< N, increasing: their frames; empty: see `seconds`
+  std::vector<double> seconds;    ///< N, increasing; or empty
   double fps = 0;                 ///< of `frames`; 0: they are the clip's own
   bool is_metric = true;          ///< translations are metres
-  std::optional<Camera> camera;   ///< intrinsics, when the file has them and they are a pinhole's
-  std::string why_no_camera;      ///< otherwise
-  bool by_sorted_name = false;    ///< frames are counted, the pictures' names have no number for them
+  std::optional<Camera> camera;   ///< intrinsics, if the file has those of a pinhole
+  std::string why_no_camera;      ///< reason if there are none
+  bool by_sorted_name = false;    ///< frames were numbered in order, as the images' names have no numbers
 };
 
 /// Throws std::runtime_error naming file and place: what was found, what was expected.
@@ -47,12 +47,12 @@ RecordedCameraPath CameraPathFromText(const std::string& text, const std::string
 void WriteCameraPath(const std::string& path, const CameraPath& camera_path);
 
 struct PlaceInTime {
-  int first =
-      -1;  ///< number of the clip's first frame; −1: 0 when the path begins with 0, else 1 for COLMAP, 0 for JSON
-  double fps = 0;  ///< pictures a second of numbered frames; 0: the file's, else they are the clip's frames
+  int first = -1;  ///< number of the clip's first frame; −1: 0 if the path begins with 0, else 1 for COLMAP, 0 for JSON
+  double fps = 0;  ///< rate of numbered frames; 0: the file's, or else they are the clip's frames
 };
-/// The path on the clock of a clip whose frames are at these seconds: numbered frames at the times of the clip's
-/// frames, those beyond its end left out. Throws std::runtime_error beginning with `where` when none is in the clip.
+/// Converts the path to the clock of a clip with frames at these seconds: numbered frames take the times of the clip's
+/// frames, and those beyond its end are left out. Throws std::runtime_error beginning with `where` if none is in the
+/// clip.
 CameraPath CameraPathOnClock(const RecordedCameraPath& recorded, std::span<const double> clip_seconds,
                              const PlaceInTime& place, const std::string& where);
 

@@ -24,8 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kRotationTolerance = 1e-3;
-/// Skew that no camera of today has, but that rounding may leave, as a share of the focal length.
-constexpr double kMostSkew = 1e-6;
+/// Skew attributed to rounding, as a share of the focal length.
+constexpr double kMaxSkew = 1e-6;
 constexpr const char* kAffineFile = "video_to_calib_affine.json";
 
 void SetSize(const JsonNode& node, double width, double height, Camera* camera) {
@@ -41,7 +41,7 @@ void SetSize(const JsonNode& node, double width, double height, Camera* camera) 
 void SetK(const JsonNode& node, Camera* camera) {
   const std::vector<double> K = node.Numbers(9);
   const bool is_bottom_row = K[6] == 0 && K[7] == 0 && K[8] == 1;
-  if (!is_bottom_row || K[3] != 0 || std::abs(K[1]) > kMostSkew * std::abs(K[0])) {
+  if (!is_bottom_row || K[3] != 0 || std::abs(K[1]) > kMaxSkew * std::abs(K[0])) {
     throw std::runtime_error(node.place() + ": not [fx 0 cx; 0 fy cy; 0 0 1] (skew is not supported)");
   }
   camera->fx = K[0], camera->fy = K[4], camera->cx = K[2], camera->cy = K[5];
@@ -84,7 +84,7 @@ void CheckCamera(const JsonNode& node, const Camera& camera) {
     throw std::runtime_error(node.place() + ": scale " + std::to_string(camera.scale) +
                              " px a metre, expected positive");
   }
-  // A principal point far outside the picture means that the matrix belongs to another image size.
+  // A principal point far outside the image means that the matrix belongs to another image size.
   if (std::abs(camera.cx - camera.width / 2.0) > 2.0 * camera.width ||
       std::abs(camera.cy - camera.height / 2.0) > 2.0 * camera.height) {
     throw std::runtime_error(node.place() + ": principal point (" + std::to_string(camera.cx) + ", " +

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Calibrated cameras from files, with their poses in metres.
+/// Loads calibrated cameras, with their poses in metres.
 ///
-/// 1. AIST++: a folder with `mapping.txt` ("<sequence> <setting>" per line) and `<setting>.json`, or one such JSON: a
+/// 1. AIST++: a folder with `mapping.txt` ("<sequence> <setting>" per line) and `<setting>.json`, or such a JSON file:
+/// a
 ///    list of {name, size [w,h], matrix 3×3, distortions, rotation (Rodrigues, rad), translation (cm)}.
 /// 2. Pose2Sim `calib_refined.json`: {"cameras": [{name, size [w,h], K 3×3, dist_k1k2p1p2, rvec, tvec_m}]}; beside it
-///    `video_to_calib_affine.json` (or the folder that holds both) tells how the video's pixels map to the
+///    `video_to_calib_affine.json` (or the folder that holds both) maps the video's pixels to the
 ///    calibration's.
 ///    A Calib.toml (pose2sim_toml.h) is read too.
 /// 3. This project's: one object, a list of them, or {"cameras": […]}, each with
@@ -32,24 +33,24 @@ struct NamedCamera {
   std::string name;
   Camera camera;
   CameraPose pose;
-  /// Affine map from this camera's pixels to those of the video that goes with it (identity unless the file says).
+  /// Affine map from this camera's pixels to those of its video (identity unless given in the file).
   Matrix2x3d video_px_from_camera_px = (Matrix2x3d() << 1, 0, 0, 0, 1, 0).finished();
 };
 
 /// All cameras of a file or folder; `sequence` picks the setting of an AIST++ folder (the name of the clip or of one of
-/// its videos, with or without path and extension). Throws std::runtime_error naming file, place and expectation.
+/// its videos, with or without path and extension). Throws std::runtime_error naming file, place and what was expected.
 std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string& sequence = "");
 
 /// The cameras of one file's text; `where` names it in messages.
 std::vector<NamedCamera> CamerasFromText(const std::string& text, const std::string& where);
 
-/// One camera of form 3, without its pose, and a pose ("rotation" 3×3 or Rodrigues 3, "translation" 3 metres) of other
-/// JSON.
+/// Reads one camera of form 3 without its pose, and a pose ("rotation" 3×3 or Rodrigues 3, "translation" 3 metres) of
+/// other JSON.
 Camera CameraFromJson(const JsonNode& node);
 CameraPose PoseFromJson(const JsonNode& rotation, const JsonNode& translation);
 
 /// The camera called `view` ("c01"; "cam01" also finds "cam_01"); an empty view means the only one. Throws
-/// std::runtime_error beginning with `where` that lists the cameras present.
+/// std::runtime_error beginning with `where` and listing the cameras present.
 const NamedCamera& FindCamera(const std::vector<NamedCamera>& cameras, const std::string& view,
                               const std::string& where);
 

@@ -34,10 +34,10 @@ namespace fs = std::filesystem;
 
 constexpr double kUsualFps = 30;
 /// A clip whose every landmark lies within this many units of the corner cannot be in pixels.
-constexpr double kMostNormalised = 3;
+constexpr double kMaxNormalised = 3;
 /// Share of landmarks that may lie outside the image (plus a tenth of its size) before the size is called wrong.
-constexpr double kMostOutside = 0.5;
-constexpr size_t kMostDetectionBytes = size_t{2} << 30;
+constexpr double kMaxOutside = 0.5;
+constexpr size_t kMaxDetectionBytes = size_t{2} << 30;
 constexpr const char* kExpectedDetections =
     "expected OpenPose or MMPose JSON (a folder or a file), COCO or AlphaPose JSON, BlazePose/MediaPipe JSON, an "
     "AIST++ "
@@ -70,12 +70,12 @@ std::string FolderOfView(const std::string& folder, const std::string& view) {
                            "; the folder has " + PrintableList(names));
 }
 
-/// Whether the folder's files are MMPose's, by the first that shows somebody.
+/// Returns true if the folder's files are MMPose's, by the first file with a person.
 bool HoldsMmpose(const std::string& folder) {
-  constexpr size_t kMostFirstBytes = size_t{64} << 20;
+  constexpr size_t kMaxFirstBytes = size_t{64} << 20;
   for (const std::string& name : SortedEntries(folder, /*folders=*/false)) {
     JsonLimits limits;
-    limits.max_bytes = kMostFirstBytes;
+    limits.max_bytes = kMaxFirstBytes;
     const std::string path = (fs::path(folder) / name).string();
     const nlohmann::json json = ReadJsonFile(path, limits);
     if (!json.is_array()) return false;
@@ -113,7 +113,7 @@ Bounds CoordinateBounds(const KeypointSequence& sequence) {
 /// Fractions of the image → pixels.
 void ToPixels(KeypointSequence* sequence, bool is_openpose, const std::string& where) {
   const Bounds bounds = CoordinateBounds(*sequence);
-  if (bounds.highest > kMostNormalised || bounds.lowest < -kMostNormalised) return;
+  if (bounds.highest > kMaxNormalised || bounds.lowest < -kMaxNormalised) return;
   if (sequence->image_width <= 0 || sequence->image_height <= 0) {
     throw std::runtime_error(where + ": coordinates between " + std::to_string(bounds.lowest) + " and " +
                              std::to_string(bounds.highest) +
@@ -128,7 +128,7 @@ void ToPixels(KeypointSequence* sequence, bool is_openpose, const std::string& w
   }
 }
 
-/// An image size that contradicts the detections is a wrong file, a wrong video or swapped numbers.
+/// Throws if the image size contradicts the detections: a wrong file, a wrong video or swapped numbers.
 void CheckImageSize(const KeypointSequence& sequence, const std::string& where) {
   const double w = sequence.image_width, h = sequence.image_height;
   if (w <= 0 || h <= 0) return;
@@ -141,7 +141,7 @@ void CheckImageSize(const KeypointSequence& sequence, const std::string& where) 
     right = std::max(right, double{p.x});
     bottom = std::max(bottom, double{p.y});
   }
-  if (static_cast<double>(outside) > kMostOutside * static_cast<double>(seen)) {
+  if (static_cast<double>(outside) > kMaxOutside * static_cast<double>(seen)) {
     throw std::runtime_error(where + ": " + std::to_string(outside) + " of " + std::to_string(seen) +
                              " landmarks (up to x = " + std::to_string(std::lround(right)) +
                              ", y = " + std::to_string(std::lround(bottom)) + ") lie outside an image of " +
@@ -150,7 +150,7 @@ void CheckImageSize(const KeypointSequence& sequence, const std::string& where) 
   }
 }
 
-/// One person's landmarks as the file has them.
+/// One person's landmarks as in the file.
 KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, const LoadDetectionsOptions& options) {
   const double fps = options.fps > 0 ? options.fps : kUsualFps;
   if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpectedDetections);
@@ -186,7 +186,7 @@ KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, co
   throw std::runtime_error(path + ": unknown kind of file; " + kExpectedDetections);
 }
 
-/// What the caller knows, and the checks that every format needs.
+/// Applies the caller's options and the checks common to all formats.
 KeypointSequence Finish(KeypointSequence sequence, const std::string& path, const LoadDetectionsOptions& options) {
   if (options.image_width > 0) {
     if (sequence.image_width > 0 &&
@@ -200,7 +200,7 @@ KeypointSequence Finish(KeypointSequence sequence, const std::string& path, cons
   }
   DropUnsure(options.min_confidence, &sequence);
   if (CoordinateBounds(sequence).seen == 0) {
-    throw NothingToTrack(path + ": nobody was detected in any of " + std::to_string(sequence.num_frames()) + " frames");
+    throw NoPersonFound(path + ": nobody was detected in any of " + std::to_string(sequence.num_frames()) + " frames");
   }
   const bool is_openpose =
       sequence.convention == "body25" || sequence.convention == "body25b" || sequence.convention == "openpose_coco18";
@@ -235,7 +235,7 @@ KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOpt
   CheckOptions(options);
   std::error_code ignored;
   if (!fs::is_directory(path, ignored))
-    return DetectionsFromBytes(ReadFileBytes(path, kMostDetectionBytes), path, options);
+    return DetectionsFromBytes(ReadFileBytes(path, kMaxDetectionBytes), path, options);
   const std::string folder = FolderOfView(path, options.view);
   const double fps = options.fps > 0 ? options.fps : kUsualFps;
   const PeopleSequence people = HoldsMmpose(folder) ? ReadMmposeFolder(folder, SortedEntries(folder, false), fps)

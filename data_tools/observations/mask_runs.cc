@@ -12,10 +12,10 @@
 namespace bodyloom {
 namespace {
 
-/// Runs say more pixels than bytes, so what they may say is bounded before memory is taken: boxes of at most 67
-/// megapixels (8K video has 33), and beyond 1 GiB together no more than 16384 pixels a run, where a person's outline
-/// has some hundreds.
-constexpr int64_t kMostPixelsOfBox = int64_t{1} << 26, kMostPixelsAnyway = int64_t{1} << 30, kMostPixelsOfRun = 16384;
+/// Runs describe more pixels than they take bytes, so their sizes are bounded before memory is allocated: boxes of at
+/// most 67 megapixels (8K video has 33), and beyond 1 GiB together no more than 16384 pixels a run, where a person's
+/// outline has some hundreds.
+constexpr int64_t kMaxPixelsOfBox = int64_t{1} << 26, kMaxPixelsAnyway = int64_t{1} << 30, kMaxPixelsOfRun = 16384;
 
 std::vector<int64_t> WholeNumbers(const NpzArrays& arrays, const std::string& name, const std::vector<int64_t>& shape,
                                   const std::string& where) {
@@ -64,8 +64,8 @@ NpzArrays MaskRuns(const PartLabelSequence& mask) {
       BODYLOOM_CHECK(frame.x_begin >= 0 && frame.y_begin >= 0 && frame.x_begin + frame.width <= mask.image_width &&
                          frame.y_begin + frame.height <= mask.image_height,
                      "masks: the rectangle of frame ", t, " leaves the image");
-      BODYLOOM_CHECK(frame.labels.size() <= size_t{kMostPixelsOfBox}, "masks: frame ", t, " has ", frame.labels.size(),
-                     " pixels, expected at most ", kMostPixelsOfBox);
+      BODYLOOM_CHECK(frame.labels.size() <= size_t{kMaxPixelsOfBox}, "masks: frame ", t, " has ", frame.labels.size(),
+                     " pixels, expected at most ", kMaxPixelsOfBox);
       boxes.insert(boxes.end(), {frame.x_begin, frame.y_begin, frame.width, frame.height});
       bool inside = false;
       auto from = frame.labels.begin();
@@ -93,9 +93,9 @@ PartLabelSequence MaskFromRuns(const NpzArrays& arrays, const std::string& where
   const auto T = static_cast<int64_t>(counts.size());
   const std::vector<int64_t> boxes = WholeNumbers(arrays, "mask_box", {T, 4}, where);
   const std::vector<int64_t> runs = WholeNumbers(arrays, "mask_runs", {-1}, where);
-  if (T < 1 || std::min(size[0], size[1]) < 1 || std::max(size[0], size[1]) > kMostLabelPixelsASide) {
+  if (T < 1 || std::min(size[0], size[1]) < 1 || std::max(size[0], size[1]) > kMaxLabelPixelsASide) {
     throw std::runtime_error(Concatenate(where, ": image_size ", size[0], " x ", size[1], " of ", T,
-                                         " frames, expected at least one frame and 1 to ", kMostLabelPixelsASide,
+                                         " frames, expected at least one frame and 1 to ", kMaxLabelPixelsASide,
                                          " pixels a side"));
   }
   PartLabelSequence mask;
@@ -122,8 +122,8 @@ PartLabelSequence MaskFromRuns(const NpzArrays& arrays, const std::string& where
       fail("mask_box leaves the image");
     }
     pixels += box[2] * box[3];
-    if (box[2] * box[3] > kMostPixelsOfBox ||
-        pixels > std::max(kMostPixelsAnyway, kMostPixelsOfRun * static_cast<int64_t>(runs.size()))) {
+    if (box[2] * box[3] > kMaxPixelsOfBox ||
+        pixels > std::max(kMaxPixelsAnyway, kMaxPixelsOfRun * static_cast<int64_t>(runs.size()))) {
       fail(Concatenate("boxes of ", pixels, " pixels by now, too many for ", runs.size(), " runs"));
     }
     frame.x_begin = static_cast<int>(box[0]), frame.y_begin = static_cast<int>(box[1]);

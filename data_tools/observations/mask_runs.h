@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip's masks as runs of pixels, in arrays of an .npz: a person of 900 pixels takes 10 KB a frame, where pictures
-/// of 1920×1080 take 2 MB.
+/// A clip's masks as runs of pixels, in arrays of an .npz: a person 900 pixels tall takes 10 KB per frame, a 1920×1080
+/// image 2 MB.
 ///
-///   mask_runs   int32 (R): lengths of runs of pixels, in the rows of a frame's box one after the other, by turns
-///   without
-///               and with the person, beginning without; frame after frame
-///   mask_count  int32 (T): how many of them are of each frame
-///   mask_box    int32 (T, 4): x, y, width, height in pixels; width 0: nobody was seen
+///   mask_runs   int32 (R): lengths of runs of pixels in row-major order of a frame's box, alternately without and with
+///               the person, beginning without; frame after frame
+///   mask_count  int32 (T): number of runs of each frame
+///   mask_box    int32 (T, 4): x, y, width, height in pixels; width 0: nobody was detected
 ///   image_size  int32 (2): width, height
 #pragma once
 
@@ -18,18 +17,18 @@
 
 namespace bodyloom {
 
-/// Of an image whose labels or masks are read.
-constexpr int64_t kMostLabelPixelsASide = 32768;
+/// Maximum side of an image whose labels or masks are read.
+constexpr int64_t kMaxLabelPixelsASide = 32768;
 
-/// The four arrays of masks: a pixel shows the person where its label is not 0. Throws std::invalid_argument when a
-/// rectangle leaves the image, or has more than 67 megapixels.
+/// Returns the four arrays of the masks: a pixel shows the person if its label is not 0. Throws std::invalid_argument
+/// if a rectangle extends beyond the image or has more than 67 megapixels.
 NpzArrays MaskRuns(const PartLabelSequence& mask);
 
-/// Whether an archive holds masks as runs.
+/// Returns true if an archive holds masks as runs.
 bool HasMaskRuns(const NpzArrays& arrays);
 
-/// Frames and image size, labels 0 and 1; without timestamps. Throws std::runtime_error naming `where`, the array, and
-/// what was expected of which frame; before memory is taken, where boxes are too large for the runs that fill them.
+/// Reads frames and image size, with labels 0 and 1, without timestamps. Throws std::runtime_error naming `where`, the
+/// array, the frame and what was expected; before allocating memory if boxes are too large for their runs.
 PartLabelSequence MaskFromRuns(const NpzArrays& arrays, const std::string& where);
 
 }  // namespace bodyloom

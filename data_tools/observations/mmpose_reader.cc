@@ -12,19 +12,19 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kMostBytesPerImage = size_t{64} << 20;
+constexpr size_t kMaxBytesPerImage = size_t{64} << 20;
 
 bool IsMmposePerson(const JsonNode& node) { return node.Has("keypoints") && node.Has("keypoint_scores"); }
 bool IsMmposeFrame(const JsonNode& node) { return node.Has("frame_id") && node.Has("instances"); }
 
-/// A landmark order that counts as many as one of ours, but is another (Human3.6M has 17 too).
+/// Refuses a landmark order with as many landmarks as a supported one but other ones (Human3.6M has 17 too).
 void CheckNames(const JsonNode& document, size_t num_points) {
   if (!document.Has("meta_info") || !document.At("meta_info").Has("keypoint_id2name")) return;
   const JsonNode names = document.At("meta_info").At("keypoint_id2name");
   if (!names.Has("0") || !names.At("0").is_string() || names.At("0").Text() == Coco17().names[0]) return;
-  Refuse(names.place(),
-         Concatenate(num_points, " landmarks of which the first is '", PrintableText(names.At("0").Text()),
-                     "', expected COCO's, Halpe's or COCO-WholeBody's, which begin with the nose"));
+  ThrowFileError(names.place(),
+                 Concatenate(num_points, " landmarks of which the first is '", PrintableText(names.At("0").Text()),
+                             "', expected COCO's, Halpe's or COCO-WholeBody's, which begin with the nose"));
 }
 
 DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention** convention) {
@@ -32,10 +32,11 @@ DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention** c
   const size_t n = points.size();
   const KeypointConvention* found = ConventionOfCount(n);
   if (found == nullptr || (*convention != nullptr && found != *convention)) {
-    Refuse(points.place(), Concatenate(n, " landmarks, expected ",
-                                       *convention != nullptr ? std::string("as many as before")
-                                                              : std::string("17 (COCO), 23 or 133 (COCO-WholeBody), 26 "
-                                                                            "or 136 (Halpe)")));
+    ThrowFileError(points.place(),
+                   Concatenate(n, " landmarks, expected ",
+                               *convention != nullptr ? std::string("as many as before")
+                                                      : std::string("17 (COCO), 23 or 133 (COCO-WholeBody), 26 "
+                                                                    "or 136 (Halpe)")));
   }
   *convention = found;
   const std::vector<double> scores = node.At("keypoint_scores").Numbers(static_cast<int>(n));
@@ -44,7 +45,7 @@ DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention** c
   for (size_t k = 0; k < person.points.size(); ++k) {
     const JsonNode point = points.At(k);
     if (point.size() == 3) {
-      Refuse(point.place(), "3 numbers: keypoints that were lifted to 3D, expected pixels (x, y)");
+      ThrowFileError(point.place(), "3 numbers: keypoints that were lifted to 3D, expected pixels (x, y)");
     }
     const std::vector<double> xy = point.Numbers(2);
     person.points[k] = {static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(scores[k])};
@@ -102,7 +103,7 @@ PeopleSequence ReadMmposeFolder(const std::string& folder, const std::vector<std
   const KeypointConvention* convention = nullptr;
   std::vector<std::vector<DetectedPerson>> frames;
   JsonLimits limits;
-  limits.max_bytes = kMostBytesPerImage;
+  limits.max_bytes = kMaxBytesPerImage;
   for (const std::string& name : names) {
     const std::string path = (std::filesystem::path(folder) / name).string();
     const nlohmann::json document = ReadJsonFile(path, limits);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// MMPose's JSON. A person is {"keypoints": [[x, y], …], "keypoint_scores": […], "bbox": …, "bbox_score": …}, pixels.
+/// Reads MMPose's JSON. A person is {"keypoints": [[x, y], …], "keypoint_scores": […], "bbox": …, "bbox_score": …},
+/// pixels.
 ///
-/// Three forms: a list of people (one image; a folder of such files, one an image), a list of {"frame_id": n,
+/// Three forms: a list of people (one image; a folder has one such file per image), a list of {"frame_id": n,
 /// "instances": [people]} with n from 0 (the inferencer on a video), and {"meta_info": {…}, "instance_info":
-/// [{"frame_id": n, "instances": […]}]} with n from 1 (the demo scripts). There is no identity. Scores may exceed 1 a
-/// little and count as 1. 17 (COCO), 23, 26 (Halpe, Body8), 133 (COCO-WholeBody) and 136 landmarks are read;
-/// `meta_info` says which they are when it is there, and an order of other landmarks is refused. Lifted keypoints [x,
-/// y, z] are refused: they are no pixels.
+/// [{"frame_id": n, "instances": […]}]} with n from 1 (the demo scripts). There is no identity. Scores may exceed 1
+/// slightly and count as 1. 17 (COCO), 23, 26 (Halpe, Body8), 133 (COCO-WholeBody) and 136 landmarks are read;
+/// `meta_info`, if present, identifies them, and an order of other landmarks is refused. Lifted keypoints [x, y, z] are
+/// refused, as they are not pixels.
 /// Source: open-mmlab/mmpose, mmpose/structures/utils.py, mmpose/apis/inferencers, demo/topdown_demo_with_mmdet.py.
 #pragma once
 
@@ -22,7 +23,7 @@ bool IsMmposeJson(const JsonNode& document);
 /// Throws std::runtime_error naming the place.
 PeopleSequence MmposeFromJson(const JsonNode& document, double fps);
 
-/// Files of one image each in a folder, `names` of them; frame numbers as ReadOpenPoseFolder() finds them. Throws
+/// Reads files of one image each from a folder, with these names; frame numbers as in ReadOpenPoseFolder(). Throws
 /// std::runtime_error naming file and place.
 PeopleSequence ReadMmposeFolder(const std::string& folder, const std::vector<std::string>& names, double fps);
 

@@ -19,9 +19,9 @@ const NdArray& RequireShape(const NpzArrays& arrays, const std::string& key, con
   if (!array.is_number() || array.shape != shape) {
     NdArray expected;
     expected.shape = shape;
-    Refuse(where, key,
-           "shape " + array.ShapeText() + (array.is_number() ? "" : " of no numbers") + ", expected numbers, " +
-               expected.ShapeText());
+    ThrowFileError(where, key,
+                   "shape " + array.ShapeText() + (array.is_number() ? "" : " of no numbers") + ", expected numbers, " +
+                       expected.ShapeText());
   }
   return array;
 }
@@ -31,7 +31,7 @@ double OptionalSigma(const NpzArrays& arrays, const std::string& key, const std:
   if (arrays.find(key) == arrays.end()) return 0;
   const double sigma = RequireShape(arrays, key, {}, where).ToDoubles()[0];
   if (!(sigma >= 0) || !std::isfinite(sigma)) {
-    Refuse(where, key, std::to_string(sigma) + ", expected a standard deviation, or 0 when it is not known");
+    ThrowFileError(where, key, std::to_string(sigma) + ", expected a standard deviation, or 0 when it is not known");
   }
   return sigma;
 }
@@ -41,15 +41,15 @@ double OptionalSigma(const NpzArrays& arrays, const std::string& key, const std:
 std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string& where) {
   const NdArray& array = RequireArray(arrays, "timestamps", where);
   if (!array.is_number() || array.shape.size() != 1) {
-    Refuse(where, "timestamps", "shape " + array.ShapeText() + ", expected one number a frame");
+    ThrowFileError(where, "timestamps", "shape " + array.ShapeText() + ", expected one number a frame");
   }
   std::vector<double> timestamps = array.ToDoubles();
-  if (timestamps.empty()) Refuse(where, "timestamps", "no frames");
+  if (timestamps.empty()) ThrowFileError(where, "timestamps", "no frames");
   for (size_t t = 0; t < timestamps.size(); ++t) {
     if (!std::isfinite(timestamps[t]) || (t > 0 && !(timestamps[t] > timestamps[t - 1]))) {
-      Refuse(where, "timestamps",
-             "entry " + std::to_string(t) + " is " + std::to_string(timestamps[t]) +
-                 ", expected finite, increasing seconds");
+      ThrowFileError(where, "timestamps",
+                     "entry " + std::to_string(t) + " is " + std::to_string(timestamps[t]) +
+                         ", expected finite, increasing seconds");
     }
   }
   return timestamps;
@@ -59,7 +59,8 @@ void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* wi
   if (arrays.find("image_size") == arrays.end()) return;
   const std::vector<double> size = RequireShape(arrays, "image_size", {2}, where).ToDoubles();
   if (!(size[0] >= 0 && size[1] >= 0 && size[0] <= 100000 && size[1] <= 100000)) {
-    Refuse(where, "image_size", std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", expected pixels");
+    ThrowFileError(where, "image_size",
+                   std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", expected pixels");
   }
   *width = static_cast<int>(size[0]);
   *height = static_cast<int>(size[1]);
@@ -67,7 +68,7 @@ void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* wi
 
 std::vector<std::string> KeypointNamesFromNpz(const NpzArrays& arrays, const std::string& where) {
   const NdArray& names = RequireArray(arrays, "keypoint_names", where);
-  if (!names.is_text() || names.shape.size() != 1) Refuse(where, "keypoint_names", "expected a list of text");
+  if (!names.is_text() || names.shape.size() != 1) ThrowFileError(where, "keypoint_names", "expected a list of text");
   return names.ToStrings();
 }
 
@@ -165,24 +166,26 @@ DenseSequence DenseFromNpz(const NpzArrays& arrays, const std::string& where) {
   for (int64_t i = 0; i < n; ++i) {
     const std::string entry = "entry " + std::to_string(i);
     if (frame[i] < 0 || frame[i] >= dense.num_frames()) {
-      Refuse(where, "dense_frame",
-             entry + " is " + std::to_string(frame[i]) + ", expected 0 to " + std::to_string(dense.num_frames() - 1));
+      ThrowFileError(
+          where, "dense_frame",
+          entry + " is " + std::to_string(frame[i]) + ", expected 0 to " + std::to_string(dense.num_frames() - 1));
     }
     if (face[i] < 0 || face[i] > 100'000'000) {
-      Refuse(where, "dense_face", entry + " is " + std::to_string(face[i]) + ", expected a face index");
+      ThrowFileError(where, "dense_face", entry + " is " + std::to_string(face[i]) + ", expected a face index");
     }
     DenseKeypoint point;
     point.face = static_cast<int>(face[i]);
     point.barycentric = {barycentric[3 * i], barycentric[3 * i + 1], barycentric[3 * i + 2]};
     if (!(std::abs(point.barycentric.sum() - 1) < kBarycentricTolerance) ||
         !(point.barycentric.minCoeff() > -kBarycentricTolerance)) {
-      Refuse(where, "dense_barycentric", entry + ": weights must not be negative and sum to 1");
+      ThrowFileError(where, "dense_barycentric", entry + ": weights must not be negative and sum to 1");
     }
     point.pixel = {pixel[2 * i], pixel[2 * i + 1]};
-    if (!point.pixel.allFinite()) Refuse(where, "dense_pixel", entry + " is not finite");
+    if (!point.pixel.allFinite()) ThrowFileError(where, "dense_pixel", entry + " is not finite");
     point.sigma_px = sigma[i];
     if (!(point.sigma_px > 0) || !std::isfinite(point.sigma_px)) {
-      Refuse(where, "dense_sigma_px", entry + " is " + std::to_string(point.sigma_px) + ", expected a positive number");
+      ThrowFileError(where, "dense_sigma_px",
+                     entry + " is " + std::to_string(point.sigma_px) + ", expected a positive number");
     }
     dense.frames[frame[i]].push_back(point);
   }

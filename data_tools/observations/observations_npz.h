@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The project's own file of observations: a .npz that holds one person's 2D keypoints, dense surface keypoints, or
-/// both. Several people's keypoints: people_npz.h.
+/// The project's own file of observations: a .npz with one person's 2D keypoints, dense surface keypoints, or both.
+/// Keypoints of several people: people_npz.h.
 ///
 /// | key                | shape  | type  | meaning                                                             |
 /// |--------------------|--------|-------|---------------------------------------------------------------------|
@@ -26,19 +26,19 @@
 
 namespace bodyloom {
 
-/// Writes whichever are given (at least one; both must have the same timestamps and image size).
+/// Writes those that are not null (at least one; both must have the same timestamps and image size).
 void WriteObservations(const std::string& path, const KeypointSequence* keypoints, const DenseSequence* dense);
 
 /// The key `timestamps`: T > 0 finite, increasing seconds.
 std::vector<double> TimestampsFromNpz(const NpzArrays& arrays, const std::string& where);
 
-/// The key `image_size`, where there is one.
+/// The key `image_size`, if there is one.
 void ImageSizeFromNpz(const NpzArrays& arrays, const std::string& where, int* width, int* height);
 
 /// The key `keypoint_names`: a list of text.
 std::vector<std::string> KeypointNamesFromNpz(const NpzArrays& arrays, const std::string& where);
 
-/// The key `keypoint_convention`; "custom" when there is none.
+/// The key `keypoint_convention`; "custom" if there is none.
 std::string ConventionNameFromNpz(const NpzArrays& arrays);
 
 bool HasKeypoints(const NpzArrays& arrays);

@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kMostBytesPerFrame = size_t{64} << 20;
+constexpr size_t kMaxBytesPerFrame = size_t{64} << 20;
 
 /// One frame as it stands in the file, before the convention is known.
 using RawFrame = std::vector<DetectedPerson>;
@@ -128,7 +128,7 @@ PeopleSequence ReadOpenPoseFolder(const std::string& folder, double fps, const s
   raw.reserve(names.size());
   size_t num_points = 0;
   JsonLimits limits;
-  limits.max_bytes = kMostBytesPerFrame;
+  limits.max_bytes = kMaxBytesPerFrame;
   for (const std::string& name : names) {
     const std::string path = (std::filesystem::path(folder) / name).string();
     const nlohmann::json document = ReadJsonFile(path, limits);

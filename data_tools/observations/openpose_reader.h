@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// OpenPose's JSON: {"version": 1.3, "people": [{"person_id": [-1], "pose_keypoints_2d": [x, y, c, …], …}]} per frame.
+/// Reads OpenPose's JSON: {"version": 1.3, "people": [{"person_id": [-1], "pose_keypoints_2d": [x, y, c, …], …}]} per
+/// frame.
 ///
-/// x and y are pixels, c is in [0, 1], 0,0,0 means missing. The order of people means nothing. `people` may be empty
-/// and may hold empty objects. The number of landmarks gives the model, except that BODY_25 and BODY_25B both have 25:
-/// they are told apart by whether landmark 1 lies between landmarks 2 and 5 (a neck between shoulders) or the first
-/// three form a face. Also read: a list of such frames in one file, a table {"12.jpg": {"people": …}}, and the older
-/// key "pose_keypoints". Source: OpenPose doc/02_output.md.
+/// x and y are pixels, c is in [0, 1], 0,0,0 means missing. The order of people is arbitrary. `people` may be empty and
+/// may hold empty objects. The number of landmarks determines the model, except that BODY_25 and BODY_25B both have 25:
+/// in BODY_25 landmark 1 lies between landmarks 2 and 5 (a neck between shoulders), in BODY_25B the first three form a
+/// face. Also read: a list of such frames in one file, a table {"12.jpg": {"people": …}}, and the older key
+/// "pose_keypoints". Source: OpenPose doc/02_output.md.
 #pragma once
 
 #include <string>
@@ -15,12 +16,12 @@
 
 namespace bodyloom {
 
-/// A folder with one JSON file a frame; frame numbers come from the file names (frame_numbers.h), from the order of the
-/// names when a name has no number. `convention` is "" (detect), "body25", "body25b", "openpose_coco18", "coco17" or
+/// Reads a folder with one JSON file per frame; frame numbers come from the file names (frame_numbers.h), or from their
+/// order if a name has no number. `convention` is "" (detect), "body25", "body25b", "openpose_coco18", "coco17" or
 /// "halpe26". Throws std::runtime_error naming the file and place.
 PeopleSequence ReadOpenPoseFolder(const std::string& folder, double fps, const std::string& convention = "");
 
-/// Whether a parsed file is one of OpenPose's forms.
+/// Returns true if a parsed file has one of OpenPose's forms.
 bool IsOpenPoseJson(const JsonNode& document);
 PeopleSequence OpenPoseFromJson(const JsonNode& document, double fps, const std::string& convention = "");
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char *kMaskKind = "person", *kDensePoseKind = "densepose";
 
-/// Whether the labels are a mask of the person.
+/// Returns true if the labels are a mask of the person.
 bool IsMask(const NpzArrays& arrays, const std::string& where) {
   const auto found = arrays.find("label_kind");
   if (found == arrays.end()) return false;
@@ -31,7 +31,7 @@ bool IsMask(const NpzArrays& arrays, const std::string& where) {
   return kind == kMaskKind;
 }
 
-/// Pixels between two boxes, 0 when they meet.
+/// Distance of two boxes in pixels, 0 if they touch.
 int Gap(const cv::Rect& a, const cv::Rect& b) {
   const int dx = std::max({0, b.x - (a.x + a.width), a.x - (b.x + b.width)});
   const int dy = std::max({0, b.y - (a.y + a.height), a.y - (b.y + b.height)});
@@ -52,7 +52,7 @@ uint8_t Majority(const cv::Mat& labels, int x, int y) {
   return best;
 }
 
-/// Labels thinner than 3 px give way to their neighbours', a ring of pixels at a time.
+/// Replaces labels thinner than 3 px by their neighbours', one ring of pixels at a time.
 void MendStrays(cv::Mat* labels) {
   const cv::Mat kernel = cv::Mat::ones(3, 3, CV_8U);
   std::array<bool, 256> present{};
@@ -71,7 +71,7 @@ void MendStrays(cv::Mat* labels) {
   cv::findNonZero(strays, open);
   constexpr int kRings = 4;
   for (int ring = 0; ring < kRings && !open.empty(); ++ring) {
-    std::vector<uint8_t> found;  // by open point; written after all were asked, so that a ring does not feed itself
+    std::vector<uint8_t> found;  // by open point; written at the end, so a ring does not depend on itself
     found.reserve(open.size());
     for (const cv::Point& pixel : open) found.push_back(Majority(*labels, pixel.x, pixel.y));
     std::vector<cv::Point> left;
@@ -83,7 +83,7 @@ void MendStrays(cv::Mat* labels) {
   }
 }
 
-/// Whether a mask is one connected component: following its outlines is far cheaper than labelling its pixels.
+/// Returns true if a mask is one connected component; following its outlines is far cheaper than labelling its pixels.
 bool IsOnePiece(const cv::Mat& mask) {
   std::vector<std::vector<cv::Point>> outlines;
   std::vector<cv::Vec4i> hierarchy;  // of two levels: components, and their holes
@@ -92,7 +92,7 @@ bool IsOnePiece(const cv::Mat& mask) {
          1;
 }
 
-/// Sets what is not the person to background, by the components of `mask`, and returns the person's box.
+/// Sets pixels off the person to background, by the components of `mask`, and returns the person's box.
 cv::Rect DropOthers(const cv::Mat& mask, const ReadPartLabelsOptions& options, cv::Mat* labels, int64_t* dropped) {
   cv::Mat blob, stats, centroids;
   const int count = cv::connectedComponentsWithStats(mask, blob, stats, centroids, 8, CV_32S, cv::CCL_BBDT);
@@ -105,12 +105,12 @@ cv::Rect DropOthers(const cv::Mat& mask, const ReadPartLabelsOptions& options, c
                     stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
   };
   const cv::Rect main = box_of(largest);
-  const double most_gap = options.max_gap * std::max(main.width, main.height);
-  const double least_area = options.min_share * stats.at<int>(largest, cv::CC_STAT_AREA);
+  const double max_gap = options.max_gap * std::max(main.width, main.height);
+  const double min_area = options.min_share * stats.at<int>(largest, cv::CC_STAT_AREA);
   std::vector<char> kept(count, 1);
   cv::Rect box = main;
   for (int i = 1; i < count; ++i) {
-    kept[i] = stats.at<int>(i, cv::CC_STAT_AREA) >= least_area || Gap(main, box_of(i)) <= most_gap;
+    kept[i] = stats.at<int>(i, cv::CC_STAT_AREA) >= min_area || Gap(main, box_of(i)) <= max_gap;
     if (kept[i]) {
       box |= box_of(i);
     } else if (dropped != nullptr) {
@@ -140,17 +140,17 @@ LabelImage CutPerson(const cv::Mat& image, const ReadPartLabelsOptions& options,
   return {box.x, box.y, box.width, box.height, {labels.datastart, labels.dataend}};
 }
 
-/// Of `labels`, a picture a frame.
-PartLabelSequence FromPictures(const NpzArrays& arrays, const std::string& where, const ReadPartLabelsOptions& options,
-                               int64_t* dropped_pixels) {
+/// Reads `labels`, one image per frame.
+PartLabelSequence FromImages(const NpzArrays& arrays, const std::string& where, const ReadPartLabelsOptions& options,
+                             int64_t* dropped_pixels) {
   const NdArray& array = RequireArray(arrays, "labels", where);
   const auto fail = [&](const std::string& message) { throw std::runtime_error(where + ": labels: " + message); };
   if (array.shape.size() != 3 || array.dtype != DType::kU8) {
     fail("shape " + array.ShapeText() + ", expected uint8, frames x height x width");
   }
   const int64_t T = array.shape[0], H = array.shape[1], W = array.shape[2];
-  if (T < 1 || H < 1 || W < 1 || std::max(H, W) > kMostLabelPixelsASide) {
-    fail(Concatenate("shape ", array.ShapeText(), ", expected at least one frame and at most ", kMostLabelPixelsASide,
+  if (T < 1 || H < 1 || W < 1 || std::max(H, W) > kMaxLabelPixelsASide) {
+    fail(Concatenate("shape ", array.ShapeText(), ", expected at least one frame and at most ", kMaxLabelPixelsASide,
                      " pixels a side"));
   }
   PartLabelSequence sequence;
@@ -171,7 +171,7 @@ PartLabelSequence FromPictures(const NpzArrays& arrays, const std::string& where
   return sequence;
 }
 
-/// Of masks as runs, cut as pictures are.
+/// Reads masks as runs, cropped like label images.
 PartLabelSequence FromRuns(const NpzArrays& arrays, const std::string& where, const ReadPartLabelsOptions& options,
                            int64_t* dropped_pixels) {
   PartLabelSequence sequence = MaskFromRuns(arrays, where);
@@ -203,7 +203,7 @@ PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& 
                                     const ReadPartLabelsOptions& options, int64_t* dropped_pixels) {
   if (dropped_pixels != nullptr) *dropped_pixels = 0;
   PartLabelSequence sequence = HasMaskRuns(arrays) ? FromRuns(arrays, where, options, dropped_pixels)
-                                                   : FromPictures(arrays, where, options, dropped_pixels);
+                                                   : FromImages(arrays, where, options, dropped_pixels);
   const size_t T = sequence.frames.size();
   if (arrays.contains("timestamps")) {
     sequence.timestamps = TimestampsFromNpz(arrays, where);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// DensePose part labels, or a mask of the person, of a whole clip in one .npz: key `labels`, uint8, T×H×W, 0 =
-/// background, 1..24 = parts; optional `timestamps` (T, seconds) and `label_kind`, the text "densepose" (without the
-/// key: the same) or "person": then 1 is the person, and PartLabelSequence::AsMask() has been called on what is read. A
-/// mask may be given as runs (mask_runs.h) in the place of `labels`, as this project writes it.
+/// Reads DensePose part labels, or a mask of the person, of a whole clip from one .npz: key `labels`, uint8, T×H×W, 0 =
+/// background, 1..24 = parts; optional `timestamps` (T, seconds) and `label_kind`, the text "densepose" (the default)
+/// or "person": then 1 is the person, and PartLabelSequence::AsMask() has been applied to the result. A mask may be
+/// stored as runs (mask_runs.h) in place of `labels`, as written by this project.
 #pragma once
 
 #include <string>
@@ -17,23 +17,23 @@ struct ReadPartLabelsOptions {
   double min_share = 0.05;  ///< blobs smaller than this share of the largest one …
   double max_gap = 0.15;    ///< … and farther from it than this share of its box's longer side are not the person
   uint8_t highest_label = 24;
-  /// Resized label images carry lines of false labels between two parts, and specks. True: what is thinner than 3 px
-  /// takes the label that most of its neighbours have, or becomes unknown (255) when none has one.
+  /// Resized label images have lines of false labels between two parts, and specks. If true, regions thinner than 3 px
+  /// take the most frequent label of their neighbours, or become unknown (255) if none has one.
   bool mend_strays = true;
 };
 
-/// Writes a mask as runs: the person is where `frames[t]` is not 0. Throws std::invalid_argument when frames and
-/// timestamps differ in number or a rectangle leaves the image, std::runtime_error naming the path when it cannot be
-/// written.
+/// Writes a mask as runs: a pixel shows the person if its label is not 0. Throws std::invalid_argument when frames and
+/// timestamps differ in number or a rectangle extends beyond the image, std::runtime_error naming the path when it
+/// cannot be written.
 void WriteMask(const std::string& path, const PartLabelSequence& mask);
 
-/// Whether an archive is one of part labels.
+/// Returns true if an archive holds part labels.
 bool HasPartLabels(const NpzArrays& arrays);
 
-/// Each frame's labels, cut to the person's box. Blobs of labels apart from the person (min_share, max_gap) become
-/// background; `dropped_pixels`, when requested, counts them over the clip. Throws std::runtime_error naming the file,
-/// the key, and what was expected: shape, type, a label above highest_label (with its frame and pixel), timestamps that
-/// do not increase.
+/// Reads each frame's labels, cropped to the person's box. Blobs of labels apart from the person (min_share, max_gap)
+/// become background; `dropped_pixels`, when requested, counts them over the clip. Throws std::runtime_error naming the
+/// file, the key, and what was expected: shape, type, a label above highest_label (with its frame and pixel),
+/// timestamps that do not increase.
 PartLabelSequence ReadPartLabels(const std::string& path, const ReadPartLabelsOptions& options = {},
                                  int64_t* dropped_pixels = nullptr);
 PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& where,

@@ -16,9 +16,9 @@ namespace {
 /// A detection may lie this many body sizes from where the track was last seen, plus this many for each frame of a gap.
 constexpr double kGate = 0.5;
 constexpr double kGatePerMissedFrame = 0.05;
-constexpr double kGateMost = 2.0;
-/// A track is given up after this many frames without a detection, plus some for each frame it was seen: a blip is
-/// forgotten soon (and costs nothing in a long clip), a person who left for a while is not.
+constexpr double kGateMax = 2.0;
+/// A track ends after this many frames without a detection, plus some for each frame with one: spurious detections are
+/// dropped soon (and cost nothing in a long clip), people who leave for a while are kept.
 constexpr int kPatienceFrames = 30, kPatiencePerSeenFrame = 10;
 
 bool IsSeen(const Keypoint& p) { return p.confidence > 0 && std::isfinite(p.x) && std::isfinite(p.y); }
@@ -116,7 +116,7 @@ std::vector<PersonTrack> LinkPeople(const PeopleSequence& people) {
           if (tracks[k].identity == detections[d].identity) pairs.emplace_back(0.0, k, d);
           continue;
         }
-        const double gate = std::min(kGateMost, kGate + kGatePerMissedFrame * (t - tracks[k].last_frame - 1));
+        const double gate = std::min(kGateMax, kGate + kGatePerMissedFrame * (t - tracks[k].last_frame - 1));
         const double distance = RelativeDistance(tracks[k], detections[d], extents[d]);
         if (distance < gate) pairs.emplace_back(distance, k, d);
       }
@@ -145,7 +145,7 @@ PersonTrack PersonOf(const PeopleSequence& people, int person, const std::string
   BODYLOOM_CHECK(person >= 0, "person ", person, " must not be negative");
   const std::vector<PersonTrack> tracks = LinkPeople(people);
   if (tracks.empty()) {
-    throw NothingToTrack(where + ": no person in any of " + std::to_string(people.frames.size()) + " frames");
+    throw NoPersonFound(where + ": no person in any of " + std::to_string(people.frames.size()) + " frames");
   }
   if (person >= static_cast<int>(tracks.size())) {
     throw std::runtime_error(where + ": person " + std::to_string(person) + " requested, but only " +

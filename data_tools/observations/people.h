@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everyone a detector saw in a clip, and the choice of one of them.
+/// All people that a detector found in a clip, linked into tracks, and the selection of one.
 ///
-/// Detectors list people in any order, frame by frame. LinkPeople joins detections into tracks: each detection goes to
-/// the track whose last landmarks lie nearest (mean distance over landmarks seen in both, relative to the person's
-/// size), nearest pairs first; a detection that is far from every track starts a new one. A track survives gaps, its
-/// gate widening with their length, and is given up after 30 frames plus ten for each frame it was seen. Detections
-/// that carry identities from the detector are joined by identity.
+/// Detectors list the people of each frame in any order. LinkPeople joins detections into tracks: each detection goes
+/// to the track whose last landmarks are nearest (mean distance over landmarks present in both, relative to the
+/// person's size), nearest pairs first; a detection that is far from every track starts a new one. A track continues
+/// across gaps, its gate widening with their length, and ends after 30 frames without a detection plus ten for each
+/// frame with one. Detections with identities from the detector are joined by identity.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@
 namespace bodyloom {
 
 struct DetectedPerson {
-  std::vector<Keypoint> points;  ///< one a landmark of the convention
-  int identity = -1;             ///< from the detector's own tracker; −1 when it has none
+  std::vector<Keypoint> points;  ///< one per landmark of the convention
+  int identity = -1;             ///< from the detector's own tracker; −1 if it has none
 };
 
 struct PeopleSequence {
@@ -35,14 +35,14 @@ struct PersonTrack {
   double weight = 0;                            ///< Σ over frames of box diagonal (px) × mean confidence
 };
 
-/// All tracks, heaviest first: index 0 is the person who is largest, best seen and longest in the picture.
+/// All tracks by descending weight: index 0 is the person who is largest, most confident and longest in the image.
 std::vector<PersonTrack> LinkPeople(const PeopleSequence& people);
 
-/// Person number `person` in LinkPeople's order. Throws std::runtime_error beginning with `where` when nobody was seen
-/// at all or there are not that many people.
+/// Returns person number `person` in LinkPeople's order. Throws std::runtime_error beginning with `where` if nobody was
+/// detected or there are fewer people.
 PersonTrack PersonOf(const PeopleSequence& people, int person, const std::string& where);
 
-/// The landmarks of one of them; frames without that person are missing. Confidences are clamped to [0, 1]; non-finite
+/// The landmarks of one person, missing in frames without that person. Confidences are clamped to [0, 1]; non-finite
 /// points become missing.
 KeypointSequence KeypointsOf(const PeopleSequence& people, const PersonTrack& person);
 

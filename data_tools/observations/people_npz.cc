@@ -55,23 +55,25 @@ PeopleSequence PeopleFromNpz(const NpzArrays& arrays, const std::string& where) 
       WholeNumbers(RequireArray(arrays, "people_identity", where), "people_identity", where);
   const auto rows = int64_t(frames.size()), num_points = int64_t(people.convention.names.size());
   if (identities.size() != frames.size()) {
-    Refuse(where, "people_identity",
-           Concatenate(identities.size(), " entries, expected the ", rows, " of people_frame"));
+    ThrowFileError(where, "people_identity",
+                   Concatenate(identities.size(), " entries, expected the ", rows, " of people_frame"));
   }
   const NdArray& array = RequireArray(arrays, "people_keypoints", where);
   if (!array.is_number() || array.shape != std::vector<int64_t>{rows, num_points, 3}) {
-    Refuse(where, "people_keypoints",
-           Concatenate("shape ", array.ShapeText(), ", expected numbers, ", rows, " x ", num_points, " x 3"));
+    ThrowFileError(where, "people_keypoints",
+                   Concatenate("shape ", array.ShapeText(), ", expected numbers, ", rows, " x ", num_points, " x 3"));
   }
   const std::vector<float> values = array.ToFloats();
   for (int64_t row = 0; row < rows; ++row) {
     const std::string entry = "entry " + std::to_string(row);
     if (frames[row] < 0 || frames[row] >= int64_t(people.frames.size()) || (row > 0 && frames[row] < frames[row - 1])) {
-      Refuse(where, "people_frame",
-             Concatenate(entry, " is ", frames[row], ", expected 0 to ", people.frames.size() - 1, ", not decreasing"));
+      ThrowFileError(
+          where, "people_frame",
+          Concatenate(entry, " is ", frames[row], ", expected 0 to ", people.frames.size() - 1, ", not decreasing"));
     }
     if (identities[row] < -1 || identities[row] > 1'000'000'000) {
-      Refuse(where, "people_identity", Concatenate(entry, " is ", identities[row], ", expected -1 or a number from 0"));
+      ThrowFileError(where, "people_identity",
+                     Concatenate(entry, " is ", identities[row], ", expected -1 or a number from 0"));
     }
     DetectedPerson person;
     person.identity = int(identities[row]);

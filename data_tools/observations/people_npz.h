@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everybody's 2D landmarks in the project's own file of observations (.npz): one row a person and frame.
+/// 2D landmarks of all people in the project's own file of observations (.npz): one row per person and frame.
 ///
 /// | key                | shape  | type | meaning                                                          |
 /// |--------------------|--------|------|------------------------------------------------------------------|
@@ -19,8 +19,8 @@
 
 namespace bodyloom {
 
-/// Throws std::invalid_argument when frames, timestamps and landmarks do not fit each other; std::runtime_error naming
-/// the path when it cannot be written.
+/// Throws std::invalid_argument when frames, timestamps and landmarks are inconsistent; std::runtime_error naming the
+/// path when it cannot be written.
 void WritePeople(const std::string& path, const PeopleSequence& people);
 
 bool HasPeople(const NpzArrays& arrays);

@@ -19,10 +19,10 @@
 namespace bodyloom {
 namespace {
 
-/// A key of so many words makes as many tables within tables, which the parser frees by recursion.
-constexpr std::ptrdiff_t kMostDotsOfALine = 200;
+/// Limit of the words of a key, each of which makes a nested table, which the parser frees by recursion.
+constexpr std::ptrdiff_t kMaxDotsOfALine = 200;
 
-/// Our JSON's keys by Pose2Sim's; what is not among them is left out.
+/// JSON keys of this project by those of Pose2Sim; others are left out.
 const std::map<std::string_view, const char*>& OwnKeys() {
   static const std::map<std::string_view, const char*> keys = {{"name", "name"},
                                                                {"matrix", "K"},
@@ -32,7 +32,7 @@ const std::map<std::string_view, const char*>& OwnKeys() {
   return keys;
 }
 
-/// Dates and tables, which no camera has, as null.
+/// Dates and tables, which do not occur in cameras, become null.
 nlohmann::json JsonOfToml(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* number = node.as_floating_point()) return number->get();
@@ -74,8 +74,8 @@ nlohmann::json CamerasOfPose2SimToml(const std::string& text, const std::string&
     throw std::runtime_error(where + ": line " + std::to_string(line) + ": '" + found + "', expected " + expected);
   };
   for (const std::string_view& line : lines) {
-    if (std::count(line.begin(), line.end(), '.') > kMostDotsOfALine) {
-      fail(size_t(&line - lines.data()) + 1, "at most " + std::to_string(kMostDotsOfALine) + " dots");
+    if (std::count(line.begin(), line.end(), '.') > kMaxDotsOfALine) {
+      fail(size_t(&line - lines.data()) + 1, "at most " + std::to_string(kMaxDotsOfALine) + " dots");
     }
   }
   const toml::parse_result file = toml::parse(std::string_view(text));

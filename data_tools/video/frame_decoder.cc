@@ -26,7 +26,7 @@ LibavPtr<AVCodecContext> OpenDecoder(const VideoPackets& packets) {
   if (!codec) throw std::bad_alloc();
   int result = avcodec_parameters_to_context(codec.get(), stream.codecpar);
   codec->pkt_timebase = stream.time_base;
-  codec->max_pixels = kMaxPicturePixels;
+  codec->max_pixels = kMaxImagePixels;
   codec->thread_count = 0;
   codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
   if (result >= 0) result = avcodec_open2(codec.get(), decoder, nullptr);
@@ -54,13 +54,13 @@ FrameDecoder::FrameDecoder(const std::string& path)
 bool FrameDecoder::Feed() {
   if (draining_) return false;
   draining_ = !packets_.Next(packet_.get());
-  // Without a packet it hands out what it has kept back. Another answer than 0 is a frame that it could not decode.
+  // Without a packet it returns delayed frames. A result other than 0 is a frame that it could not decode.
   if (avcodec_send_packet(codec_.get(), draining_ ? nullptr : packet_.get()) < 0) ++lost_;
   return true;
 }
 
 bool FrameDecoder::Next() {
-  constexpr int kPatience = 10'000;  // no decoder should fail for ever without taking a packet
+  constexpr int kPatience = 10'000;  // bounds failures of a decoder that takes no packet
   for (int failures = 0; failures < kPatience;) {
     const int result = avcodec_receive_frame(codec_.get(), frame_.get());
     if (result == AVERROR_EOF) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The decoded frames of a video file in the order in which they are shown, and when.
+/// Decodes the frames of a video file in presentation order, with their times.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace bodyloom {
 
-// Seconds from the presentation timestamps of frames, in the order in which they are shown.
+// Times in seconds from the presentation timestamps of frames, in presentation order.
 
 class FrameClock {
  public:
@@ -19,9 +19,9 @@ class FrameClock {
   /// more than 0.
   FrameClock(int numerator, int denominator, double frame_s);
 
-  /// Seconds since the first frame, each more than the one before. What files leave out or get wrong is filled in: a
-  /// frame without a timestamp comes `frame_s` after the one before, one that is not later half of `frame_s`; and where
-  /// the timestamps go back by more than a second (recordings put one behind the other), the clock goes on.
+  /// Returns seconds since the first frame, strictly increasing. Missing or wrong timestamps are replaced: a frame
+  /// without one comes `frame_s` after its predecessor, one that is not later half of `frame_s`; where timestamps go
+  /// back by more than a second (concatenated recordings), the clock continues.
   double Next(std::optional<int64_t> timestamp);
 
  private:
@@ -34,16 +34,16 @@ class FrameClock {
 /// Several frames are decoded at once, on as many threads as there are processors.
 class FrameDecoder {
  public:
-  /// Throws as VideoPackets, and when no decoder is there.
+  /// Throws as VideoPackets, and when there is no decoder.
   explicit FrameDecoder(const std::string& path);
 
-  /// Decodes the next frame that can be; false at the end.
+  /// Decodes the next decodable frame; false at the end.
   bool Next();
   /// The frame decoded last; its pixels are as the codec stores them.
   [[nodiscard]] const AVFrame& frame() const { return *frame_; }
-  /// When it is shown, seconds after the first frame.
+  /// Presentation time of that frame, seconds after the first one.
   [[nodiscard]] double time() const { return time_s_; }
-  /// How many frames could not be decoded so far, and how many of those that were have damaged parts.
+  /// Number of frames so far that could not be decoded, and of decoded ones with damaged parts.
   [[nodiscard]] int num_lost() const { return lost_; }
   [[nodiscard]] int num_damaged() const { return damaged_; }
   [[nodiscard]] const VideoPackets& packets() const { return packets_; }

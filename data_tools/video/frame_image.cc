@@ -26,7 +26,7 @@ const int32_t* DisplayMatrixOf(const AVStream& stream) {
   return size >= 9 * sizeof(int32_t) ? reinterpret_cast<const int32_t*>(data) : nullptr;
 }
 
-/// JPEG's formats, and grey unless it says otherwise, use all 256 values.
+/// JPEG's formats, and grey by default, use all 256 values.
 bool HasFullRange(const AVFrame& frame) {
   switch (frame.format) {
     case AV_PIX_FMT_YUVJ420P:
@@ -43,7 +43,7 @@ bool HasFullRange(const AVFrame& frame) {
   return format != nullptr && format->nb_components <= 2 && (format->flags & AV_PIX_FMT_FLAG_RGB) == 0;
 }
 
-/// Where chroma was sampled, in 1/256 of a luma pixel from the first one.
+/// Position of the chroma samples, in 1/256 of a luma pixel from the first one.
 void SetChromaLocation(SwsContext* scaler, const AVPixFmtDescriptor& format, int location) {
   const bool centred =
       location == AVCHROMA_LOC_CENTER || location == AVCHROMA_LOC_TOP || location == AVCHROMA_LOC_BOTTOM;
@@ -91,8 +91,8 @@ void FrameImage::Prepare(const Kind& kind) {
   av_opt_set_int(scaler, "dstw", kind.width, 0);
   av_opt_set_int(scaler, "dsth", kind.height, 0);
   av_opt_set_int(scaler, "src_format", format, 0);
-  // From YUV to packed colours the library takes a short cut that is darker by 1 to 1.5 levels and repeats chroma, or a
-  // slow way; to planes it is fast and right. Colours that are RGB already are only moved.
+  // From YUV to packed colours the library uses an approximation that is darker by 1 to 1.5 levels and repeats chroma,
+  // or is slow; to planes it is fast and correct. RGB colours are only copied.
   const bool is_rgb = (description->flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL)) != 0;
   converted_->format = is_rgb ? AV_PIX_FMT_BGR24 : AV_PIX_FMT_GBRP;
   av_opt_set_int(scaler, "dst_format", converted_->format, 0);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMaxPictureBytes = size_t{1} << 28;
+constexpr size_t kMaxImageBytes = size_t{1} << 28;
 
 /// True when a comes before b, runs of digits compared by value.
 bool NaturalLess(std::string_view a, std::string_view b) {
@@ -46,14 +46,14 @@ bool NaturalLess(std::string_view a, std::string_view b) {
   return a < b;  // frame_1 and frame_01
 }
 
-/// Whether OpenCV will take the file for one of the formats that are read. It would try others too, whose libraries end
-/// the process over a file that is broken: GDCM takes whatever has "DICM" at byte 128 and is nothing else.
+/// Returns true if OpenCV will recognise the file as one of the supported formats. It would try others too, whose
+/// libraries terminate the process on damaged files: GDCM takes any other file with "DICM" at byte 128.
 bool BeginsAsAnImage(std::string_view bytes) {
   using namespace std::string_view_literals;
   const auto has = [&](size_t at, std::string_view text) {
     return bytes.size() >= at + text.size() && bytes.substr(at, text.size()) == text;
   };
-  // Told by libwebp, after this, from what follows; a broken one goes on to the next library.
+  // libwebp then checks the rest; a damaged file is passed on to the next library.
   if (has(0, "RIFF"sv)) return has(8, "WEBP"sv) && !has(128, "DICM"sv);
   constexpr std::array kBeginnings = {
       "\x89PNG\r\n\x1a\n"sv, "\xFF\xD8\xFF"sv, "BM"sv, "II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv};
@@ -69,12 +69,12 @@ bool IsImageName(const std::string& path) {
 
 Image ReadImage(const std::string& path) { return DecodeImage(ReadImageBytes(path), path); }
 
-std::string ReadImageBytes(const std::string& path) { return ReadFileBytes(path, kMaxPictureBytes); }
+std::string ReadImageBytes(const std::string& path) { return ReadFileBytes(path, kMaxImageBytes); }
 
 Image DecodeImage(const std::string& bytes, const std::string& path) {
-  if (const auto header = ReadImageHeader(bytes); header && header->width * header->height > kMaxPicturePixels) {
+  if (const auto header = ReadImageHeader(bytes); header && header->width * header->height > kMaxImagePixels) {
     throw std::runtime_error(Concatenate(path, ": an image of ", header->width, "x", header->height,
-                                         " pixels, expected at most ", kMaxPicturePixels, "; scale it down"));
+                                         " pixels, expected at most ", kMaxImagePixels, "; scale it down"));
   }
   cv::Mat decoded;
   try {
@@ -82,13 +82,13 @@ Image DecodeImage(const std::string& bytes, const std::string& path) {
       const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
       decoded = cv::imdecode(view, cv::IMREAD_COLOR);
     }
-  } catch (const cv::Exception&) {  // a header that promises too much; reported below like any other nonsense
+  } catch (const cv::Exception&) {  // a header with excessive sizes; reported below like any other fault
     decoded.release();
   }
-  if (decoded.empty() || decoded.total() > size_t{kMaxPicturePixels}) {
+  if (decoded.empty() || decoded.total() > size_t{kMaxImagePixels}) {
     throw std::runtime_error(path +
                              ": not an image that can be decoded, expected PNG, JPEG, BMP, WebP or TIFF of at most " +
-                             std::to_string(kMaxPicturePixels) + " pixels");
+                             std::to_string(kMaxImagePixels) + " pixels");
   }
   Image image(decoded.cols, decoded.rows);
   cv::Mat target = MatOf(&image);
@@ -134,9 +134,9 @@ std::vector<std::string> ImageFilesOf(const std::string& folder) {
 void WriteAlphaPng(const std::string& path, int width, int height, std::span<const uint8_t> bgra) {
   BODYLOOM_CHECK(width > 0 && height > 0 && bgra.size() == 4 * static_cast<size_t>(width) * height, "writing ", path,
                  ": ", bgra.size(), " bytes for ", width, "x", height, " pixels");
-  const cv::Mat picture(height, width, CV_8UC4, const_cast<uint8_t*>(bgra.data()));
+  const cv::Mat image(height, width, CV_8UC4, const_cast<uint8_t*>(bgra.data()));
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 2})) Refuse(path, "cannot be encoded");
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 2})) ThrowFileError(path, "cannot be encoded");
   WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Still images: PNG, JPEG, BMP, WebP and TIFF in; PNG and JPEG out.
+/// Reads still images (PNG, JPEG, BMP, WebP, TIFF) and writes PNG and JPEG.
 #pragma once
 
 #include <array>
@@ -14,27 +14,28 @@
 
 namespace bodyloom {
 
-/// Whether a file is named as a still image: .png .jpg .jpeg .bmp .webp .tif .tiff, in any case.
+/// Returns true if a file name has the extension of a still image: .png .jpg .jpeg .bmp .webp .tif .tiff, in any case.
 bool IsImageName(const std::string& path);
 
-/// Throws std::runtime_error naming the file when it cannot be read or is no image of 1 to 2^26 pixels.
+/// Throws std::runtime_error naming the file when it cannot be read or is not an image of 1 to 2^26 pixels.
 Image ReadImage(const std::string& path);
 
-/// ReadImage in its two halves, for who looks at the file's bytes too: at most 2^28 of them; `path` is for messages.
+/// The two steps of ReadImage, for callers that also need the file's bytes: at most 2^28 of them; `path` is for
+/// messages.
 std::string ReadImageBytes(const std::string& path);
 Image DecodeImage(const std::string& bytes, const std::string& path);
 
-/// By the extension: .png, or .jpg/.jpeg (quality 95). Whole or not at all. Throws std::runtime_error naming the file,
-/// std::invalid_argument for an empty image.
+/// Writes an image in the format of the extension: .png, or .jpg/.jpeg (quality 95). Atomic. Throws std::runtime_error
+/// naming the file, std::invalid_argument for an empty image.
 void WriteImage(const std::string& path, const Image& image);
 /// The bytes that WriteImage writes; `path` is for the extension and messages.
 std::string EncodeImage(const Image& image, const std::string& path);
 
-/// The image files of a folder (.png .jpg .jpeg .bmp .webp .tif .tiff), numbers in names compared as numbers, so that
-/// frame_2 comes before frame_10; hidden files are passed over. Throws std::runtime_error when there are none.
+/// The image files of a folder (.png .jpg .jpeg .bmp .webp .tif .tiff), sorted with numbers in names compared by value,
+/// so that frame_2 comes before frame_10; hidden files are skipped. Throws std::runtime_error when there are none.
 std::vector<std::string> ImageFilesOf(const std::string& folder);
 
-// How folders of pictures name their frames.
+// File names of the frames in folders of images.
 
 /// "FOLDER/000012.png" of frame 12.
 inline std::string FrameFile(const std::filesystem::path& folder, int t) {
@@ -43,10 +44,10 @@ inline std::string FrameFile(const std::filesystem::path& folder, int t) {
   return (folder / name.data()).string();
 }
 
-// Pictures with transparency.
+// Images with transparency.
 
-/// An 8-bit PNG of blue, green, red (straight, not multiplied by alpha) and alpha, four bytes a pixel in rows from the
-/// top. Whole or not at all. Throws std::invalid_argument for another number of bytes than the size asks for,
+/// Writes an 8-bit PNG of blue, green, red (not premultiplied by alpha) and alpha, four bytes per pixel in rows from
+/// the top, atomically. Throws std::invalid_argument when the number of bytes does not match the size,
 /// std::runtime_error naming the path.
 void WriteAlphaPng(const std::string& path, int width, int height, std::span<const uint8_t> bgra);
 

@@ -9,10 +9,10 @@
 namespace bodyloom {
 namespace {
 
-/// At most 2^31, so that it does not overflow to ask how many pixels there are.
+/// At most 2^31, so that the number of pixels does not overflow.
 int64_t Side(uint64_t value) {
-  constexpr uint64_t kMost = uint64_t{1} << 31;
-  return static_cast<int64_t>(value < kMost ? value : kMost);
+  constexpr uint64_t kMaximum = uint64_t{1} << 31;
+  return static_cast<int64_t>(value < kMaximum ? value : kMaximum);
 }
 
 ImageHeader Bmp(const HeaderBytes& bytes) {

@@ -43,7 +43,7 @@ namespace {
 
 constexpr uint64_t kExifFolder = 0x8769, kFocal35mm = 0xA405, kShort = 3;
 
-/// Where the entry of a tag is in the folder at `folder`; 0: nowhere.
+/// Offset of the entry of a tag in the directory at `folder`; 0: none.
 size_t FindEntry(const HeaderBytes& bytes, bool big_endian, size_t folder, uint64_t tag) {
   constexpr size_t kEntryBytes = 12;
   const uint64_t count = bytes.Number(folder, 2, big_endian);

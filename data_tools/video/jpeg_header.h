@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The header of a JPEG, read before the file is decoded.
+/// Reads the header of a JPEG without decoding the file.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,25 @@
 namespace bodyloom {
 
 struct JpegHeader {
-  int width = 0, height = 0;  ///< 0: no frame header was found
+  int width = 0, height = 0;  ///< 0: there is no frame header
   int components = 3;         ///< 1 grey, 3 colours, 4 inks
-  double focal_35mm_mm = 0;   ///< of its Exif (jpeg_header.h); 0: it has none
+  double focal_35mm_mm = 0;   ///< from its Exif (ReadExifFocal35mm); 0: it has none
   bool ends = false;          ///< an end-of-image marker comes after the first scan began
 };
 
-/// Of a file's bytes; nullopt when they are no JPEG. Source: ITU-T T.81, Annex B.
+/// Reads a file's bytes; nullopt when they are not a JPEG. Source: ITU-T T.81, Annex B.
 std::optional<JpegHeader> ReadJpegHeader(std::string_view bytes);
 
-// What a camera noted of its lens in a photograph.
+// Lens data in a photograph's Exif.
 
 /// FocalLengthIn35mmFilm (tag 0xA405), millimetres: the focal length that has the same diagonal angle of view on film
-/// of 36 mm × 24 mm. Of the TIFF structure that an Exif segment holds; 0 when it has none, says that it is not known,
-/// or is damaged. Source: Exif 2.32 (CIPA DC-008), 4.6.
+/// of 36 mm × 24 mm. Read from the TIFF structure of an Exif segment; 0 if it is missing, marked as unknown, or
+/// damaged. Source: Exif 2.32 (CIPA DC-008), 4.6.
 double ReadExifFocal35mm(std::string_view tiff);
 
-// Whole numbers in the header of an image file. Internal to data_tools/video.
+// Integers in the header of an image file. Internal to data_tools/video.
 
-/// Whole numbers of a file's bytes; beyond the end there are zeros.
+/// Integers in a file's bytes; zero beyond the end.
 class HeaderBytes {
  public:
   explicit HeaderBytes(std::string_view bytes) : bytes_(bytes) {}

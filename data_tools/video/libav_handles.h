@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Owners of what ffmpeg's libraries allocate, and their errors as text. Their own headers stay in .cc files.
+/// Owning handles of objects of ffmpeg's libraries, and their errors as text. ffmpeg headers are only included in .cc
+/// files.
 #pragma once
 
 #include <memory>
@@ -28,12 +29,12 @@ using LibavPtr = std::unique_ptr<T, LibavDeleter>;
 LibavPtr<AVFrame> NewLibavFrame();
 LibavPtr<AVPacket> NewLibavPacket();
 
-/// What an error code of these libraries means: "Invalid data found when processing input".
+/// Text of an error code of these libraries: "Invalid data found when processing input".
 std::string LibavReason(int error);
 
-// Keeps ffmpeg's libraries from writing to the terminal: this library reports faults by exceptions.
+// Silences ffmpeg's libraries, as this library reports faults by exceptions.
 
-/// Takes effect once a process; a level other than the libraries' own that a program has set by av_log_set_level stays.
+/// Takes effect once per process; a level that a program has set by av_log_set_level is kept.
 void QuietCodecs();
 
 }  // namespace bodyloom

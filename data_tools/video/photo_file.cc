@@ -37,9 +37,9 @@ void KeepTransparency(const std::string& bytes, PhotoFile* photo) {
   cv::extractChannel(whole, alpha, 3);
   const double largest = alpha.depth() == CV_8U ? 255 : alpha.depth() == CV_16U ? 65535 : 1;
   alpha.convertTo(alpha, CV_8U, 255 / largest);
-  double least = 0, most = 0;
-  cv::minMaxLoc(alpha, &least, &most);
-  if (least == 255 || most == 0) return;
+  double minimum = 0, maximum = 0;
+  cv::minMaxLoc(alpha, &minimum, &maximum);
+  if (minimum == 255 || maximum == 0) return;
   photo->alpha.assign(alpha.begin<uchar>(), alpha.end<uchar>());
   for (size_t i = 0; i < photo->alpha.size(); ++i) {
     for (size_t c = 0; c < 3; ++c) {
@@ -58,7 +58,7 @@ PhotoFile ReadPhoto(const std::string& path) {
   const bool png = bytes.rfind("\x89PNG", 0) == 0;
   if ((jpeg && !jpeg->ends) || (png && bytes.find("IEND") == std::string::npos)) {
     throw std::runtime_error(path + (jpeg ? ": a JPEG" : ": a PNG") +
-                             " that ends before its picture does, expected a whole one; copy it again");
+                             " that ends before its image does, expected a whole one; copy it again");
   }
   PhotoFile photo;
   photo.image = DecodeImage(bytes, path);

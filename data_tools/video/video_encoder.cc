@@ -20,7 +20,7 @@ namespace bodyloom {
 namespace {
 
 /// The colours are BT.601's, of limited range, and the file says so.
-void DescribePicture(int width, int height, AVRational fps, AVCodecContext* codec) {
+void DescribeImage(int width, int height, AVRational fps, AVCodecContext* codec) {
   codec->width = width;
   codec->height = height;
   codec->time_base = av_inv_q(fps);
@@ -29,14 +29,14 @@ void DescribePicture(int width, int height, AVRational fps, AVCodecContext* code
   codec->colorspace = AVCOL_SPC_SMPTE170M;
   codec->color_range = AVCOL_RANGE_MPEG;
   codec->chroma_sample_location = AVCHROMA_LOC_LEFT;
-  // One: the bytes must not depend on how many processors there are.
+  // One thread: the bytes must not depend on the number of processors.
   codec->thread_count = 1;
-  codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // as .mp4 has it
+  codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // required by .mp4
 }
 
-/// x264 (r3095) with AVX-512 gives other bytes now and then for the same frames, when its macroblock tree is on; with
-/// what else these processors have it does not (docs/lab/video.md). A list replaces what x264 would find, so it is
-/// given only where all of it is there.
+/// x264 (r3095) with AVX-512 sometimes gives different bytes for the same frames when its macroblock tree is on; with
+/// the other instruction sets of these processors it does not (docs/lab/video.md). The list replaces x264's detection,
+/// so it is only used if all of it is supported.
 void UseRepeatableInstructions(AVCodecContext* codec) {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f")) {
@@ -51,9 +51,9 @@ LibavPtr<AVCodecContext> OpenEncoder(const AVCodec* encoder, int width, int heig
   if (encoder == nullptr) return nullptr;
   LibavPtr<AVCodecContext> codec(avcodec_alloc_context3(encoder));
   if (!codec) throw std::bad_alloc();
-  DescribePicture(width, height, fps, codec.get());
+  DescribeImage(width, height, fps, codec.get());
   if (encoder->id == AV_CODEC_ID_H264) {
-    // An overlay is looked at and made again: the default preset takes five times as long for a tenth fewer bytes.
+    // Fast, since overlays are transient: the default preset takes five times as long for a tenth fewer bytes.
     av_opt_set(codec->priv_data, "preset", "veryfast", 0);
     av_opt_set(codec->priv_data, "crf", "23", 0);
     UseRepeatableInstructions(codec.get());
@@ -65,7 +65,7 @@ LibavPtr<AVCodecContext> OpenEncoder(const AVCodec* encoder, int width, int heig
   return avcodec_open2(codec.get(), encoder, nullptr) < 0 ? nullptr : std::move(codec);
 }
 
-/// To YCbCr, with chroma averaged around where the file says that it is.
+/// To YCbCr, with chroma averaged around the position stated in the file.
 LibavPtr<SwsContext> NewScaler(int width, int height) {
   LibavPtr<SwsContext> scaler(sws_alloc_context());
   if (!scaler) throw std::bad_alloc();
@@ -87,8 +87,8 @@ class VideoEncoder::Output {
   Output(const std::string& file, const std::string& path, int width, int height, double fps)
       : width_((width + 1) / 2 * 2), height_((height + 1) / 2 * 2), frame_(NewLibavFrame()), packet_(NewLibavPacket()) {
     QuietCodecs();
-    constexpr int kMostOfAFraction = 65535;  // MPEG-4's
-    OpenCodec(path, av_d2q(fps, kMostOfAFraction));
+    constexpr int kMaxOfAFraction = 65535;  // MPEG-4's
+    OpenCodec(path, av_d2q(fps, kMaxOfAFraction));
     OpenFile(file, path);
     frame_->width = width_;
     frame_->height = height_;
@@ -100,7 +100,7 @@ class VideoEncoder::Output {
   }
 
   void Write(const Image& image) {
-    // swscale reads some bytes beyond the last pixel of what it is given: a row more.
+    // swscale reads some bytes beyond the last pixel: allocates one more row.
     padded_.create(height_ + 1, width_, CV_8UC3);
     cv::Mat bgr = padded_.rowRange(0, height_);
     cv::copyMakeBorder(MatOf(image), bgr, 0, height_ - image.height, 0, width_ - image.width, cv::BORDER_REPLICATE);
@@ -161,7 +161,7 @@ class VideoEncoder::Output {
     }
   };
 
-  /// Encodes a frame, or with null what was kept back, and writes what comes of it.
+  /// Encodes a frame, or flushes delayed ones if null, and writes the packets.
   void Send(const AVFrame* frame) {
     if (error_ < 0) return;
     Note(avcodec_send_frame(codec_.get(), frame));

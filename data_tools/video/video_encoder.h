@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Images into the H.264 or MPEG-4 stream of an .mp4 file.
+/// Encodes images to the H.264 or MPEG-4 stream of an .mp4 file.
 #pragma once
 
 #include <memory>
@@ -19,9 +19,9 @@ class VideoEncoder {
   VideoEncoder(const VideoEncoder&) = delete;
   VideoEncoder& operator=(const VideoEncoder&) = delete;
 
-  /// The next frame, of the encoder's size. What cannot be written is noted for Finish().
+  /// Writes the next frame, of the encoder's size. Errors are kept for Finish().
   void Write(const Image& frame);
-  /// Writes what was kept back and the file's index, and closes it; "" or why something could not be written.
+  /// Writes delayed frames and the file's index, and closes it; returns "" or the reason of an error.
   std::string Finish();
   /// "H.264" or "MPEG-4".
   [[nodiscard]] const std::string& codec() const;

@@ -18,13 +18,14 @@ extern "C" {
 namespace bodyloom {
 namespace {
 
-/// Whether a packet of the stream is a frame that is shown: not so where each holds a field, or VP8 hides frames.
+/// Returns true if each packet of the stream is a displayed frame; false for fields, and for VP8, which has hidden
+/// frames.
 bool HasAFrameAPacket(const AVCodecParameters& codec) {
   const bool progressive = codec.field_order == AV_FIELD_UNKNOWN || codec.field_order == AV_FIELD_PROGRESSIVE;
   return progressive && codec.codec_id != AV_CODEC_ID_VP8;
 }
 
-/// The timestamps of the frames in the order in which they are shown; nullopt when packets do not tell.
+/// The timestamps of the frames in presentation order; nullopt if the packets do not determine them.
 std::optional<std::vector<int64_t>> PacketTimestamps(VideoPackets* packets) {
   if (!HasAFrameAPacket(*packets->stream().codecpar)) return std::nullopt;
   const LibavPtr<AVPacket> packet = NewLibavPacket();
@@ -38,7 +39,7 @@ std::optional<std::vector<int64_t>> PacketTimestamps(VideoPackets* packets) {
       first_shown = packet->pts;
     }
     last_decoded = packet->dts;
-    // Shown before the first key frame: it leans on frames that are not there.
+    // Shown before the first key frame: it refers to missing frames.
     if (packet->pts < first_shown) return std::nullopt;
     if ((packet->flags & AV_PKT_FLAG_DISCARD) == 0) shown.push_back(packet->pts);
   }

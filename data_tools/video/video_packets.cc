@@ -54,16 +54,16 @@ LibavPtr<AVFormatContext> Open(const std::string& path) {
 
 void RequireModestSize(const AVStream& stream, const std::string& path) {
   const int64_t width = stream.codecpar->width, height = stream.codecpar->height;
-  if (stream.codecpar->codec_type != AVMEDIA_TYPE_VIDEO || width * height <= kMaxPicturePixels) return;
+  if (stream.codecpar->codec_type != AVMEDIA_TYPE_VIDEO || width * height <= kMaxImagePixels) return;
   throw std::runtime_error(Concatenate(path, ": a video of ", width, "x", height, " pixels, expected at most ",
-                                       kMaxPicturePixels, "; scale it down"));
+                                       kMaxImagePixels, "; scale it down"));
 }
 
-/// Fills in what the container leaves out, by decoding some frames.
+/// Determines properties missing in the container by decoding some frames.
 void Probe(AVFormatContext* context) {
   std::vector<AVDictionary*> options(context->nb_streams, nullptr);
-  for (AVDictionary*& one : options) av_dict_set_int(&one, "max_pixels", kMaxPicturePixels, 0);
-  // Its answer does not matter: what is missing is found below, or by the decoder.
+  for (AVDictionary*& one : options) av_dict_set_int(&one, "max_pixels", kMaxImagePixels, 0);
+  // Its result is ignored: missing properties are determined below, or by the decoder.
   avformat_find_stream_info(context, options.empty() ? nullptr : options.data());
   for (AVDictionary*& one : options) av_dict_free(&one);
 }
@@ -73,7 +73,7 @@ bool IsTextArt(AVCodecID codec) {
          codec == AV_CODEC_ID_IDF;
 }
 
-AVStream* PictureStream(AVFormatContext* context, const std::string& path) {
+AVStream* ImageStream(AVFormatContext* context, const std::string& path) {
   const int index = av_find_best_stream(context, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   AVStream* stream = index < 0 ? nullptr : context->streams[index];
   if (stream != nullptr && (stream->disposition & AV_DISPOSITION_ATTACHED_PIC) == 0) {
@@ -95,18 +95,18 @@ VideoPackets::VideoPackets(const std::string& path) : path_(path) {
   context_ = Open(path);
   for (unsigned i = 0; i < context_->nb_streams; ++i) RequireModestSize(*context_->streams[i], path);
   Probe(context_.get());
-  stream_ = PictureStream(context_.get(), path);
+  stream_ = ImageStream(context_.get(), path);
   RequireModestSize(*stream_, path);
   promised_ = stream_->nb_frames;
   if (promised_ > 0 && IsMov(*context_)) {
-    // The index knows which samples the edit list hides.
+    // The index states which samples the edit list hides.
     exact_promise_ = true;
     promised_ = 0;
     for (int i = 0; i < avformat_index_get_entries_count(stream_); ++i) {
       promised_ += (avformat_index_get_entry(stream_, i)->flags & AVINDEX_DISCARD_FRAME) == 0;
     }
   }
-  // Matroska says how long its longest stream lasts, and no number of frames.
+  // Matroska states the duration of its longest stream, but no number of frames.
   const bool has_length = context_->duration > 0 && context_->duration_estimation_method == AVFMT_DURATION_FROM_STREAM;
   if (promised_ <= 0 && has_length && !IsMov(*context_)) {
     promised_s_ = static_cast<double>(context_->duration) / AV_TIME_BASE;
@@ -155,7 +155,7 @@ double VideoPackets::focal_35mm_mm() const {
     const AVDictionaryEntry* entry = av_dict_get(notes, kKey, nullptr, 0);
     if (entry == nullptr) continue;
     const double value = std::strtod(entry->value, nullptr);
-    if (value > 0 && std::isfinite(value)) return value;  // cameras that do not know it write -1 and the like
+    if (value > 0 && std::isfinite(value)) return value;  // cameras without the value write -1 and the like
   }
   return 0;
 }
@@ -167,7 +167,7 @@ double VideoPackets::fps() const {
   };
   const double nominal = rate(stream_->r_frame_rate), mean = rate(stream_->avg_frame_rate);
   if (nominal == 0 || mean == 0) return std::max(nominal, mean);
-  // The last frame's duration may be anything, which shifts the mean by up to about a frame in all.
+  // The last frame's duration is arbitrary, which changes the total by up to about a frame.
   const double frames_off = std::abs(nominal / mean - 1) * std::max<double>(static_cast<double>(promised_), 100);
   return frames_off < 1.5 ? nominal : mean;
 }
@@ -177,7 +177,7 @@ int VideoPackets::num_frames() const { return promised_ > 0 && promised_ < 100'0
 std::string VideoPackets::CutOff() const {
   if (!failure_.empty()) return failure_;
   if (ends_within_a_packet_) return "it ends within a frame";
-  // What other containers promise may be off by a few frames; a tenth of the video is not a few.
+  // Frame counts of other containers may be off by a few frames, but not by a tenth of the video.
   const int64_t tolerance = exact_promise_ ? 0 : std::max<int64_t>(2, num_frames() / 10);
   constexpr double kToleranceSeconds = 0.25;
   if (end_s_ + kToleranceSeconds < promised_s_) return Concatenate("it promises ", promised_s_, " s");

@@ -135,7 +135,7 @@ class VideoReader::FileSource : public Source {
   }
 
  private:
-  /// Whether there is another frame; it is decoded.
+  /// Decodes the next frame; returns false if there is none.
   bool Peek() {
     if (!has_frame_ && !ended_) {
       has_frame_ = decoder_.Next();
@@ -154,7 +154,7 @@ class VideoReader::FileSource : public Source {
   std::string path_;
   FrameDecoder decoder_;
   FrameImage converter_;
-  Image first_;  ///< converted on opening, so that what cannot be is refused there
+  Image first_;  ///< converted on opening, so that unsupported formats are refused there
   bool has_frame_ = false, ended_ = false;
   double time_s_ = 0;
 };
@@ -164,7 +164,7 @@ VideoReader::VideoReader(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) {
     source_ = std::make_unique<ImagesSource>(path, ImageFilesOf(path));
   } else if (IsImageName(path) && std::filesystem::is_regular_file(path, error)) {
-    // By its own reader, which turns photos upright as their EXIF says.
+    // ReadImage orients photos by their EXIF.
     source_ = std::make_unique<ImagesSource>(path, std::vector<std::string>{path});
   } else {
     source_ = std::make_unique<FileSource>(path);

@@ -18,8 +18,8 @@ class VideoWriter::Sink {
       : path_(path), width_(width), height_(height), file_(path) {
     BODYLOOM_CHECK(width >= 2 && height >= 2 && width <= 16384 && height <= 16384, path, ": frames of ", width, "x",
                    height, " pixels, expected 2 to 16384 a side");
-    BODYLOOM_CHECK((int64_t{width} + 1) * (int64_t{height} + 1) <= kMaxPicturePixels, path, ": frames of ", width, "x",
-                   height, " pixels, expected at most ", kMaxPicturePixels);
+    BODYLOOM_CHECK((int64_t{width} + 1) * (int64_t{height} + 1) <= kMaxImagePixels, path, ": frames of ", width, "x",
+                   height, " pixels, expected at most ", kMaxImagePixels);
     BODYLOOM_CHECK(fps > 0 && fps <= 1000, path, ": ", fps, " frames a second, expected more than 0 and at most 1000");
     if (std::filesystem::path(path).extension() != ".mp4") {
       throw std::runtime_error(path + ": extension of a video to write, expected .mp4");

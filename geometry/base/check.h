@@ -28,22 +28,22 @@ template <typename... Parts>
 
 namespace bodyloom {
 
-// How files that cannot be used are refused.
+// Errors about files that cannot be used.
 
 /// Throws std::runtime_error "where: message"; `where` names the file or the place in it.
-[[noreturn]] inline void Refuse(const std::string& where, const std::string& message) {
+[[noreturn]] inline void ThrowFileError(const std::string& where, const std::string& message) {
   throw std::runtime_error(where + ": " + message);
 }
 
 /// The same for one entry of a file: "where: key: message".
-[[noreturn]] inline void Refuse(const std::string& where, const std::string& key, const std::string& message) {
+[[noreturn]] inline void ThrowFileError(const std::string& where, const std::string& key, const std::string& message) {
   throw std::runtime_error(where + ": " + key + ": " + message);
 }
 
 // Ranges of options, for IsValid() of option structs.
 
-/// in_range("steps", steps, 1, 1e8): whether low ≤ value ≤ high. Otherwise, NaN included, `why` (which may be nullptr)
-/// becomes "steps is 0, expected 1 to 1e+08".
+/// in_range("steps", steps, 1, 1e8)returns true if low ≤ value ≤ high. Otherwise, NaN included, `why` (which may be
+/// nullptr) becomes "steps is 0, expected 1 to 1e+08".
 class InRange {
  public:
   explicit InRange(std::string* why) : why_(why) {}

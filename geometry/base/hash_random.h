@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Random numbers that depend on nothing but a seed and a name: the same on every machine, and independent between
-/// frames, so that frames may be made in any order and on any number of threads. Arguments of one call are evaluated in
-/// an order that is the compiler's choice: draw them into variables, or within braces, which go from left to right
-/// (tests/layering/check_draws.py).
+/// Random numbers that depend only on a seed and a list of keys: the same on every machine, and independent between
+/// frames, so that frames may be made in any order and on any number of threads. The compiler chooses the order in
+/// which arguments of one call are evaluated, so draw into variables first, or within braces, which are evaluated from
+/// left to right (tests/layering/check_draws.py).
 #pragma once
 
 #include <cmath>
@@ -11,9 +11,9 @@
 
 namespace bodyloom {
 
-// Random choices as functions of numbers: SplitMix64 (Steele, Lea, Flood 2014), a counter through a mixing function.
+// SplitMix64 (Steele, Lea, Flood 2014): a counter passed through a mixing function.
 
-/// What the counter goes up by.
+/// Increment of the counter.
 inline constexpr uint64_t kSplitMixStep = 0x9E3779B97F4A7C15U;
 
 /// The mixing function.
@@ -31,7 +31,7 @@ inline double UniformOf(uint64_t hash) { return static_cast<double>(hash >> 11) 
 
 class HashRandom {
  public:
-  /// A stream of its own for each seed and list of keys (what it is for, frame, joint, …).
+  /// Starts the independent stream of a seed and a list of keys (purpose, frame, joint, …).
   HashRandom(uint64_t seed, std::initializer_list<uint64_t> keys) : state_(MixBits(seed ^ 0x5bd1e9955bd1e995ULL)) {
     for (const uint64_t key : keys) state_ = MixBits(state_ ^ Mix(key));
   }
@@ -48,7 +48,7 @@ class HashRandom {
   /// 0 … n−1. The bias of the remainder is below n/2^64.
   uint64_t Below(uint64_t n) { return Next() % n; }
 
-  /// Mean 0, variance 1 (Box and Muller; the second value is not kept, so that every call costs two numbers).
+  /// Mean 0, variance 1 (Box and Muller; the second value is not kept, so every call uses two numbers).
   double Normal() {
     const double u = 1 - Uniform(), v = Uniform();
     return std::sqrt(-2 * std::log(u)) * std::cos(2 * M_PI * v);

@@ -45,8 +45,8 @@ class Loop {
 };
 
 /// A kept thread. It helps with one loop after the other, each in four phases: free, claimed, offered (the loop is
-/// there to be taken), at work. A loop's caller may take back what was not taken yet, so nobody waits for a thread that
-/// wakes late, or that a fork() has left behind.
+/// there to be taken), at work. A loop's caller may withdraw an offer that was not taken yet, so no call waits for a
+/// thread that wakes late, or that a fork() has left behind.
 class Helper {
  public:
   /// Offers the loop; false when the helper is not free. `turn` says which of the helper's loops this is.
@@ -116,7 +116,7 @@ class Helpers {
   }
 
  private:
-  /// Makes helper i unless somebody else has.
+  /// Makes helper i unless another thread has.
   bool Grow(int i) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (i < count_.load()) return true;
@@ -197,7 +197,7 @@ void RunPhases(int num_threads, const std::vector<Phase>& phases) {
   const auto work = [&] {
     for (size_t p = 0; p < phases.size(); ++p) {
       Progress& state = progress[p];
-      // Whoever holds a task of the phase before is running, so this wait ends.
+      // Threads that hold a task of the phase before are running, so this wait ends.
       while (state.count.load(std::memory_order_acquire) < 0) {
         if (failed) return;
         std::this_thread::yield();

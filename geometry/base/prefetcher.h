@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Items computed by a thread of their own before they are requested: batches of a training run, frames of a video.
+/// Computes items ahead of their request on a separate thread: batches of a training run, frames of a video.
 #pragma once
 
 #include <condition_variable>
@@ -33,8 +33,8 @@ class Prefetcher {
   Prefetcher(const Prefetcher&) = delete;
   Prefetcher& operator=(const Prefetcher&) = delete;
 
-  /// The next one; waits for it. At most `count` times. Throws what `make` threw, once all made before it were taken.
-  /// Adds the time it waited to waited_s().
+  /// Returns the next item, waiting for it if necessary; at most `count` times. Rethrows the exception of `make` after
+  /// all items made before it were taken. Adds the waiting time to waited_s().
   Item Take() {
     const Stopwatch watch;
     std::unique_lock lock(mutex_);

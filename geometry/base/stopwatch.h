@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Wall-clock time: of one thing (Stopwatch), and of the stages of a job (StageClock). The clock is monotonic.
+/// Wall-clock time of one operation (Stopwatch) and of the stages of a job (StageClock), by a monotonic clock.
 #pragma once
 
 #include <chrono>
@@ -27,23 +27,23 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now(), lap_start_ = start_;
 };
 
-/// Stage and its seconds, in the order in which the stages first ended.
+/// Stages and their seconds, in the order in which they first ended.
 using StageSeconds = std::vector<std::pair<std::string, double>>;
 
-/// Where the time of a job went. A stage that comes around again is summed.
+/// Time spent in each stage of a job; a stage that occurs several times is summed.
 class StageClock {
  public:
-  /// Ends the stage before, if any.
+  /// Starts a stage and ends the one before, if any.
   void Begin(const std::string& stage) {
     End();
     name_ = stage;
     watch_.Lap();
   }
   void End() {
-    if (!name_.empty()) Book(std::exchange(name_, {}));
+    if (!name_.empty()) Record(std::exchange(name_, {}));
   }
   /// Adds the time since the last Begin(), End() or Book() (or construction) to `stage`; returns it, seconds.
-  double Book(const std::string& stage) {
+  double Record(const std::string& stage) {
     const double passed = watch_.Lap();
     for (auto& [name, sum] : seconds_) {
       if (name == stage) {
@@ -54,7 +54,7 @@ class StageClock {
     seconds_.emplace_back(stage, passed);
     return passed;
   }
-  /// The stages that ended.
+  /// Stages that have ended.
   [[nodiscard]] const StageSeconds& seconds() const { return seconds_; }
   /// Seconds since construction.
   [[nodiscard]] double total() const { return watch_.seconds(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Units in which files, options and tables speak, in ours (metres, radians), and back.
+/// Conversion factors between units of files, options and tables and the internal ones (metres, radians).
 #pragma once
 
 #include <numbers>

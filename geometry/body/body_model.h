@@ -51,7 +51,7 @@ struct BodyModelData {
   MatrixX3i faces;            ///< F×3 vertex indices, counter-clockwise seen from outside
   Eigen::VectorXd pose_mean;  ///< 3J axis-angle added to poses (hands of SMPL-H/X); empty means zero
 
-  // Optional surface coordinates. Never assumed: empty when neither the body nor the user brought them.
+  // Optional surface coordinates. Empty when neither the body nor the user provides them.
   MatrixX2f vt;                     ///< UV vertices in [0,1]², v up
   MatrixX3i ft;                     ///< F×3 indices into vt
   std::vector<uint8_t> face_part;   ///< F DensePose-style chart ids 1..24 (0: none)
@@ -88,7 +88,7 @@ class BodyModel {
 
   /// Joints from the root to j, j included.
   [[nodiscard]] const std::vector<int>& ancestors(int j) const { return ancestors_[j]; }
-  /// Index by name, −1 when absent.
+  /// Returns the index of a name, −1 when absent.
   [[nodiscard]] int FindJoint(const std::string& name) const;
   [[nodiscard]] int FindLandmark(const std::string& name) const;
   [[nodiscard]] bool has_uv() const { return data_.ft.rows() > 0; }
@@ -111,9 +111,9 @@ const std::vector<int>& SmplParents();
 /// ±threshold are dropped (0: exact).
 PoseCorrectives PoseCorrectivesFromDense(const float* posedirs, int num_vertices, int num_joints, float threshold = 0);
 
-// The joints whose middle is a body's mid-hip, about which errors and uncertainties of poses are stated.
+// The hip joints; errors and uncertainties of poses are stated relative to their midpoint, the mid-hip.
 
-/// l_hip and r_hip; the root twice where the body lacks one of them.
+/// Indices of l_hip and r_hip; twice the root where the body lacks one of them.
 inline std::array<int, 2> HipJoints(const BodyModel& body) {
   const std::array<int, 2> hips = {body.FindJoint("l_hip"), body.FindJoint("r_hip")};
   return hips[0] < 0 || hips[1] < 0 ? std::array<int, 2>{0, 0} : hips;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Unit normals at the vertices of a mesh: the sum over the faces at a vertex of w · (unit face normal), normalised.
 ///   area:  w = area of the face          angle: w = the face's angle at the vertex
-/// Faces are counter-clockwise seen from outside. Faces come from position indices, so the seams of a UV map leave no
-/// trace.
+/// Faces are counter-clockwise seen from outside. Faces are given by position indices, so seams of a UV map have no
+/// effect.
 ///
 /// Vertices are floats relative to the root joint (Skinner::SkinFromRoot): at 10 m from the origin a face of 2 mm would
 /// lose its normal to rounding. The result does not depend on the unit of length (tested from 1e-15 to 1e15).
 ///
-/// Never NaN. A face counts as degenerate, and is left out, when its area is rounding: |e1 × e2|∞ ≤ 4 ε max |e|². A
-/// vertex whose faces are all degenerate or cancel out takes, in this order:
+/// Never NaN. A face counts as degenerate, and is left out, when its area is within rounding error: |e1 × e2|∞ ≤ 4 ε
+/// max |e|². A vertex whose faces are all degenerate or cancel out takes, in this order:
 ///   1. the mean of the normals of the vertices it shares a face with (repeated outwards, eight rings at most),
 ///   2. its normal on the template, turned by its skinning weights, when a fallback is given,
 ///   3. the zero vector, counted as `undefined`: a vertex without any face, or a mesh that is one point.
@@ -40,7 +40,7 @@ struct NormalSummary {
   NormalSummary& operator+=(const NormalSummary& other);
 };
 
-/// What the second fallback needs: the body in its pose.
+/// Data of the second fallback: the body in its pose.
 struct NormalFallback {
   const BodyModel* body = nullptr;  ///< none: this step is left out
   const MatrixX3f* template_normals = nullptr;
@@ -55,7 +55,7 @@ struct NormalScratch {
 
 class MeshNormals {
  public:
-  /// Keeps what it needs of the faces. Throws std::invalid_argument on an index outside 0..num_vertices−1.
+  /// Copies the faces. Throws std::invalid_argument on an index outside 0..num_vertices−1.
   MeshNormals(const MatrixX3i& faces, int num_vertices, NormalWeighting weighting = NormalWeighting::kArea);
 
   [[nodiscard]] int num_vertices() const { return static_cast<int>(adjacency_.corner_begin.size()) - 1; }
@@ -81,15 +81,15 @@ class MeshNormals {
 /// The template's normals (V×3), for NormalFallback.
 MatrixX3f TemplateNormals(const BodyModel& body, NormalWeighting weighting = NormalWeighting::kArea);
 
-// Area-weighted normals of meshes given in double and wherever they stand, as pictures need them: the vertices are
-// taken relative to the first one, then geometry/body/normals.h.
+// Area-weighted normals of meshes given in double, at any distance from the origin, for rendering: vertices are taken
+// relative to the first one and passed to MeshNormals.
 
-/// For meshes that come one after another with the same faces, as the frames of a clip do: who meets whom is worked out
-/// once. Not for use by two threads at once.
+/// For successive meshes with the same faces, such as the frames of a clip: the adjacency is computed once. Not for use
+/// by two threads at once.
 class VertexNormalsOfMesh {
  public:
   VertexNormalsOfMesh() = default;
-  /// Of meshes with these faces for the first; so several of these work it out once.
+  /// Starts with the adjacency of `mesh`, which several instances can share.
   explicit VertexNormalsOfMesh(std::shared_ptr<const MeshNormals> mesh) : mesh_(std::move(mesh)) {}
 
   /// V×3 unit normals, valid until the next call. Throws std::invalid_argument as MeshNormals does.

@@ -26,7 +26,7 @@ int64_t FaceVectors(const float* positions, const int* faces, int num_faces, flo
 int64_t CornerVectors(const float* positions, const int* faces, int num_faces, float* corner_vectors);
 
 /// Sums the vectors at each vertex (entries [begin[v], begin[v+1]) of `items`) and normalises the sum to normals (×3).
-/// missing[v] = 1, normal 0, where nothing but rounding is left of the sum. Returns how many.
+/// missing[v] = 1, normal 0, where the sum is within rounding error of zero. Returns the number of those.
 int VertexSums(const float* vectors, const int* begin, const int* items, int num_vertices, float* normals,
                uint8_t* missing);
 

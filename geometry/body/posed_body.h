@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Poses a body: forward kinematics and linear blend skinning of one frame, for all vertices or a chosen few.
-/// Formulas in geometry/body/body_model.h. For many frames at once use geometry/body/skinning.h.
+/// Formulas in geometry/body/body_model.h. For many frames at once use Skinner (geometry/body/skinning.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,8 +19,8 @@ struct BodyPose {
   Eigen::Vector3d trans = Eigen::Vector3d::Zero();
 };
 
-/// From 3J axis-angle values; fewer values leave the remaining joints at zero (72 values on a 24-joint body is all of
-/// them). The body's pose_mean is added to all of them. Throws std::invalid_argument when there are more than 3J or
+/// Converts 3J axis-angle values; fewer values leave the remaining joints at zero (72 values on a 24-joint body is all
+/// of them). The body's pose_mean is added to all of them. Throws std::invalid_argument when there are more than 3J or
 /// they are not finite.
 BodyPose PoseFromAxisAngle(const BodyModel& model, const Eigen::Ref<const Eigen::VectorXd>& axis_angle,
                            const Eigen::Vector3d& trans);

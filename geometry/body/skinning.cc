@@ -196,10 +196,10 @@ SkinningSummary Skinner::Run(const ShapedBody& body, std::span<const BodyPose> p
 std::vector<int> StrongestJoints(const BodyModel& body) {
   std::vector<int> strongest(body.num_vertices(), 0);
   for (int v = 0; v < body.num_vertices(); ++v) {
-    double most = -1;
+    double maximum = -1;
     for (int k = body.influence_begin()[v]; k < body.influence_begin()[v + 1]; ++k) {
-      if (body.influence_weight()[k] > most)
-        most = body.influence_weight()[k], strongest[v] = body.influence_joint()[k];
+      if (body.influence_weight()[k] > maximum)
+        maximum = body.influence_weight()[k], strongest[v] = body.influence_joint()[k];
     }
   }
   return strongest;

@@ -12,8 +12,8 @@
 /// a body of human size. Shape is blended once per ShapedBody. The correctives of all frames are evaluated in one pass
 /// over their coefficients, because reading those (17 MB for SMPL) costs more than using them once.
 ///
-/// Determinism: a frame's vertices are the same to the bit whatever the number of threads and whatever other frames and
-/// vertices are requested. Instruction sets differ in the last bits (fused multiply-add or not).
+/// Determinism: a frame's vertices are bitwise the same for any number of threads and any other requested frames and
+/// vertices. Instruction sets differ in the last bits (fused multiply-add or not).
 #pragma once
 
 #include <Eigen/Core>
@@ -41,7 +41,7 @@ struct ShapedBody {
   std::vector<float> vertices;  ///< chosen × 3: shaped, unposed, relative to the root joint
 };
 
-/// What was done and what was left out.
+/// Statistics of a call: work done and work skipped.
 struct SkinningSummary {
   int frames = 0, vertices = 0;
   int64_t corrective_blocks = 0;          ///< (vertex, joint, frame) blocks evaluated
@@ -63,7 +63,7 @@ class Skinner {
 
   /// Vertices in the frame of the poses, metres: T × num_vertices() × 3, frame-major. Throws std::invalid_argument when
   /// a pose, the shape or the output has the wrong size. A frame whose rotations or translation are not finite gives
-  /// NaN vertices and leaves the others alone.
+  /// NaN vertices and does not affect the others.
   SkinningSummary Skin(const ShapedBody& body, std::span<const BodyPose> poses, std::span<double> vertices) const;
 
   /// The same minus the root joint's position, in float; the positions (T×3) go to `roots`.
@@ -80,13 +80,13 @@ class Skinner {
   std::vector<int64_t> blocks_of_joint_;  ///< corrective blocks of the chosen vertices by joint
 };
 
-// Which joints move a vertex, from its skinning weights.
+// Joints that move each vertex, by its skinning weights.
 
-/// V: the joint with the largest skinning weight; of equals the first.
+/// Joint with the largest skinning weight of each vertex (V entries); the first of equal ones.
 std::vector<int> StrongestJoints(const BodyModel& body);
 
-/// V: the sum of the weights of the named joints and of all that hang on them, in [0, 1]. Names that the body lacks
-/// count for nothing.
+/// For each vertex (V entries), the sum of the weights of the named joints and all their descendants, in [0, 1]. Names
+/// that the body lacks are ignored.
 std::vector<double> WeightsBelow(const BodyModel& body, const std::vector<std::string>& joints);
 
 }  // namespace bodyloom

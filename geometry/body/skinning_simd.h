@@ -42,12 +42,12 @@ struct Frames {
 /// Poses chosen vertices first..last−1 in all frames.
 void SkinVertices(const Body& body, const Frames& frames, int first, int last);
 
-/// The instruction sets of this build that this machine has, best first.
+/// Instruction sets of this build that the machine supports, best first.
 std::vector<int64_t> SimdTargets();
 std::string SimdTargetName(int64_t target);
-/// Name of the one in use.
+/// Name of the instruction set in use.
 std::string ChosenSimdTarget();
-/// For tests: from now on the process uses only this one; 0 ends that. Not to be called while vertices are skinned.
+/// For tests: restricts the process to one instruction set; 0 lifts the restriction. Not to be called during skinning.
 void ForceSimdTarget(int64_t target);
 
 }  // namespace bodyloom::skinning_internal

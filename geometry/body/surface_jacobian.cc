@@ -10,20 +10,6 @@ using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-namespace {
-
-/// ∂vec_rowmajor(R exp([δ]×))/∂δ at δ = 0.
-Eigen::Matrix<double, 9, 3> RotationEntriesByIncrement(const Matrix3d& R) {
-  Eigen::Matrix<double, 9, 3> result;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> derivative = R * Skew(Vector3d::Unit(k));
-    result.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(derivative.data());
-  }
-  return result;
-}
-
-}  // namespace
-
 SurfaceJacobian::SurfaceJacobian(const BodyModel& model, const Eigen::VectorXd& betas, const BodyPose& pose)
     : model_(model), betas_(betas), pose_(pose), skeleton_(PoseSkeleton(model, model.RestJoints(betas), pose)) {
   const int J = model.num_joints();
@@ -83,7 +69,7 @@ PointJacobian SurfaceJacobian::OfVertices(std::span<const int> vertices, std::sp
     for (int k = d.posedirs.begin[v]; k < d.posedirs.begin[v + 1]; ++k) {
       const int j = d.posedirs.joint[k];
       const Eigen::Map<const Eigen::Matrix<float, 3, 9, Eigen::RowMajor>> block(&d.posedirs.block[27 * size_t(k)]);
-      by_rotation[j] += a * M * (block.cast<double>() * RotationEntriesByIncrement(pose_.rotations[j]));
+      by_rotation[j] += a * M * (block.cast<double>() * EntriesByIncrement(pose_.rotations[j]));
       corrects[j] = true;
     }
   }

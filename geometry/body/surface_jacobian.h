@@ -42,11 +42,11 @@ class SurfaceJacobian {
   /// Throws std::invalid_argument when the body has no such face.
   [[nodiscard]] PointJacobian At(const SurfacePoint& point) const;
 
-  /// Of Σ_k weights[k] · vertex(vertices[k]), for example a Landmark. Vertices of weight zero are left out. Throws
-  /// std::invalid_argument on a vertex outside the body or spans of different length.
+  /// The Jacobian of Σ_k weights[k] · vertex(vertices[k]), for example of a Landmark. Vertices of weight zero are left
+  /// out. Throws std::invalid_argument on a vertex outside the body or spans of different length.
   [[nodiscard]] PointJacobian OfVertices(std::span<const int> vertices, std::span<const double> weights) const;
 
-  /// Of a joint's position. Throws std::invalid_argument when the body has no such joint.
+  /// The Jacobian of a joint's position. Throws std::invalid_argument when the body has no such joint.
   [[nodiscard]] PointJacobian OfJoint(int joint) const;
 
   [[nodiscard]] const PosedSkeleton& skeleton() const { return skeleton_; }

@@ -43,7 +43,7 @@ ClothSide SideOf(Limb limb) {
   return limb == Limb::kArm ? ClothSide::kOutside : ClothSide::kInside;
 }
 
-/// Mean of the distances; for the trunk, which is no tube, the tenth part from below.
+/// Mean of the distances; for the trunk, which is not a tube, the first decile.
 double RadiusOf(std::vector<double> distances, Limb limb) {
   if (distances.empty()) return 0;
   std::sort(distances.begin(), distances.end());

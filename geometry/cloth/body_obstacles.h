@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A posed, clothed body as what cloth collides with: the surface of trunk and legs point by point, and a capsule a
-/// bone that lies inside it (trunk and legs) or fills it (arms, hands). Legs and hips belong inside a loose
-/// garment, arms outside.
+/// Obstacles that a posed, clothed body presents to cloth: the surface points of trunk and legs, and one capsule per
+/// bone that lies inside it (trunk and legs) or fills it (arms, hands). Legs and hips belong inside a loose garment,
+/// arms outside.
 #pragma once
 
 #include <vector>
@@ -11,23 +11,23 @@
 
 namespace bodyloom {
 
-/// Whether one of SMPL's joints moves trunk or legs, which a loose garment hangs on and hides.
+/// True if the SMPL joint moves trunk or legs, the parts that carry a loose garment and are hidden by it.
 inline bool IsOfTrunkOrLegs(int joint) { return joint <= 11; }
 
 /// Immutable, may be shared by threads.
 class BodyObstacles {
  public:
-  /// From the shaped, clothed body in T-pose: V×3 vertices and J×3 joints. A bone's capsule has, at each end, a share
-  /// of the mean distance of the bone's vertices from its axis: 0.8 of the least tenth for the trunk, 0.85 of the mean
-  /// for legs, all of it for arms.
+  /// Takes the shaped, clothed body in T-pose: V×3 vertices and J×3 joints. The radius of a bone's capsule at each end
+  /// derives from the distances of the bone's vertices from its axis: 0.8 times their first decile for the trunk, 0.85
+  /// times their mean for legs, their mean for arms.
   BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, const MatrixX3d& joints);
 
-  /// At a pose: vertices V×3, normals V×3 and joints J×3 in one frame.
+  /// Obstacles at a pose, given by vertices (V×3), normals (V×3) and joints (J×3) in one frame.
   [[nodiscard]] ClothObstacles At(const MatrixX3d& vertices, const MatrixX3f& normals, const MatrixX3d& joints) const;
 
   /// Faces between the surface's points, for ClothSimulation.
   [[nodiscard]] const MatrixX3i& surface_faces() const { return faces_; }
-  /// Vertices of the body that the surface's points are.
+  /// Body vertex of each surface point.
   [[nodiscard]] const std::vector<int>& surface_vertices() const { return vertices_; }
 
  private:

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kReach_m = 0.1;      ///< σ of the weights
 constexpr float kMarginOfUv = 0.02F;  ///< around the garment's rectangle
-constexpr double kLeastWeight = 1e-3;
+constexpr double kMinWeight = 1e-3;
 
 /// J weights for a vertex of the garment, of which vertices of the body.
 Eigen::VectorXd WeightsNear(const BodyModel& body, const std::vector<int>& vertices, const Eigen::RowVector3d& place) {
@@ -30,7 +30,7 @@ Eigen::VectorXd WeightsNear(const BodyModel& body, const std::vector<int>& verti
     }
   }
   weights /= weights.sum();
-  weights = (weights.array() > kLeastWeight).select(weights, 0).eval();
+  weights = (weights.array() > kMinWeight).select(weights, 0).eval();
   return weights / weights.sum();
 }
 

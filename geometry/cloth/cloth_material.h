@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What cloth is made of: how heavy and stiff it is, how it slides and swings.
+/// Cloth materials: mass, stiffness, friction and damping.
 ///
-/// Mass and grip are typical of such cloth; compliances are of this simulation's links (loose_garment.h), chosen so
-/// that the hem of a skirt falls into many folds (silk), some (cotton) or few (denim).
+/// Mass and friction are typical of such cloth; compliances are of this simulation's links (loose_garment.h), chosen so
+/// that the hem of a skirt has many folds (silk), some (cotton) or few (denim).
 #pragma once
 
 #include <string>
@@ -12,17 +12,17 @@
 
 namespace bodyloom {
 
-/// Cotton is what LooseGarmentOptions and ClothOptions are without being told.
-enum class ClothStuff { kCotton, kSilk, kDenim };
+/// kCotton is the default of LooseGarmentOptions and ClothOptions.
+enum class ClothMaterial { kCotton, kSilk, kDenim };
 
-std::string ToString(ClothStuff stuff);
-/// Throws std::invalid_argument for what is neither "cotton", "silk" nor "denim".
-ClothStuff ClothStuffFromString(const std::string& name);
+std::string ToString(ClothMaterial material);
+/// Parses "cotton", "silk" or "denim"; throws std::invalid_argument for other names.
+ClothMaterial ClothMaterialFromString(const std::string& name);
 
-/// The cut, sewn of that stuff: mass, compliances, and a mesh fine enough for its folds (silk: 1.8 cm).
-LooseGarmentOptions SewnOf(ClothStuff stuff, LooseGarmentOptions cut);
+/// The cut with that material's mass and compliances, and a mesh fine enough for its folds (silk: 1.8 cm).
+LooseGarmentOptions GarmentOptionsFor(ClothMaterial material, LooseGarmentOptions cut);
 
-/// The simulation with that stuff's friction and damping.
-ClothOptions MovedAs(ClothStuff stuff, ClothOptions options);
+/// The simulation options with that material's friction and damping.
+ClothOptions ClothOptionsFor(ClothMaterial material, ClothOptions options);
 
 }  // namespace bodyloom

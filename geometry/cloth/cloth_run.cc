@@ -28,7 +28,7 @@ BodyPose Between(const BodyPose& a, const BodyPose& b, double share) {
 
 }  // namespace
 
-ClothRun::ClothRun(const ClothWearer& wearer, Motion motion, const ClothRunOptions& options)
+ClothRun::ClothRun(const ClothCollisionBody& wearer, Motion motion, const ClothRunOptions& options)
     : wearer_(wearer),
       motion_(std::move(motion)),
       options_(options),
@@ -143,12 +143,12 @@ int ClothRun::legs_through() const {
 namespace {
 
 /// Of ln of a value: friction and, the other way, damping; air density.
-constexpr double kApart[kMostClothRuns][2] = {{0, 0}, {0.1, 0.1}, {-0.1, -0.1}, {0.1, -0.1}, {-0.1, 0.1}};
+constexpr double kApart[kMaxClothRuns][2] = {{0, 0}, {0.1, 0.1}, {-0.1, -0.1}, {0.1, -0.1}, {-0.1, 0.1}};
 
 }  // namespace
 
-ClothOptions OfRun(ClothOptions options, int run) {
-  BODYLOOM_CHECK(run >= 0 && run < kMostClothRuns, "cloth: run ", run, ", expected 0 to ", kMostClothRuns - 1);
+ClothOptions PerturbedOptions(ClothOptions options, int run) {
+  BODYLOOM_CHECK(run >= 0 && run < kMaxClothRuns, "cloth: run ", run, ", expected 0 to ", kMaxClothRuns - 1);
   options.friction *= std::exp(kApart[run][0]);
   options.damping *= std::exp(-kApart[run][0]);
   options.air_density *= std::exp(kApart[run][1]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A garment along a motion: the body is posed at short ticks, and the cloth follows (cloth_simulation.h).
+/// Simulates a garment along a motion: the body is posed at short time steps and the cloth follows
+/// (cloth_simulation.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,35 +17,35 @@ namespace bodyloom {
 
 struct ClothRunOptions {
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();  ///< of the motion's frame, unit
-  double tick_s = 1.0 / 60;  ///< the body is posed at least this often, in between along shortest arcs
-  double move_in_s = 1.2;    ///< before frame 0 and after a cut: as sewn, from the T-pose to the pose
-  double settle_s = 1.3;     ///< and then at rest in it
-  /// 1/s, in both: what swings from being put on comes to rest sooner; absent: that of `cloth`.
+  double tick_s = 1.0 / 60;  ///< longest interval between poses of the body, interpolated along geodesics
+  double move_in_s = 1.2;    ///< before frame 0 and after a cut: from the garment as sewn on the T-pose to the pose
+  double settle_s = 1.3;     ///< then at rest in that pose
+  /// Damping during both, 1/s, so that the initial swinging dies down sooner; absent: that of `cloth`.
   std::optional<double> rest_damping;
   double cut_speed = 8;    ///< m/s: frames between which joints move faster than this on average are a cut
-  double cut_pause_s = 1;  ///< and frames this far apart or further
-  bool has_floor = true;   ///< under the lowest point that the motion reaches
+  double cut_pause_s = 1;  ///< frames at least this far apart are a cut too
+  bool has_floor = true;   ///< a floor under the lowest point that the motion reaches
   ClothOptions cloth;      ///< gravity and floor are set from the above
 };
 
-/// Runs the garment of a body through a motion, frame by frame, in the motion's frame. The same positions each time.
+/// Runs the garment of a body through a motion, frame by frame, in the motion's frame. Deterministic.
 class ClothRun {
  public:
-  /// `wearer` must outlive it. Throws std::invalid_argument when the motion is empty, not finite, or its timestamps do
-  /// not rise.
-  ClothRun(const ClothWearer& wearer, Motion motion, const ClothRunOptions& options);
+  /// `wearer` must outlive it. Throws std::invalid_argument when the motion is empty or not finite, or its timestamps
+  /// do not increase.
+  ClothRun(const ClothCollisionBody& wearer, Motion motion, const ClothRunOptions& options);
 
-  /// Places of the cloth's vertices in the next frame (the first call: frame 0, at rest); empty without a garment.
+  /// Positions of the cloth's vertices in the next frame (first call: frame 0, at rest); empty without a garment.
   /// Throws std::invalid_argument after the last frame.
   const std::vector<Eigen::Vector3d>& Next();
 
   [[nodiscard]] int num_cuts() const { return cuts_; }
-  /// In the frame of the last Next(): LegsThroughCloth; 0 without a garment.
+  /// LegsThroughCloth() in the frame of the last Next(); 0 without a garment.
   [[nodiscard]] int legs_through() const;
   [[nodiscard]] const ClothSimulation* simulation() const { return simulation_ ? &*simulation_ : nullptr; }
 
  private:
-  /// The body as cloth meets it.
+  /// The body as an obstacle of the cloth.
   struct Place {
     ClothObstacles obstacles;
     std::vector<Eigen::Vector3d> pinned;
@@ -57,7 +58,7 @@ class ClothRun {
   void StartIn(const BodyPose& pose);
   bool IsCut(int t) const;
 
-  const ClothWearer& wearer_;
+  const ClothCollisionBody& wearer_;
   Motion motion_;
   ClothRunOptions options_;
   VertexNormalsOfMesh bare_normals_, clothed_normals_;
@@ -66,15 +67,16 @@ class ClothRun {
   int next_ = 0, cuts_ = 0;
 };
 
-// One garment in one motion, simulated several times.
+// Repeated simulations of one garment in one motion.
 //
-// Where a fold falls is chance: with a little more friction it falls beside. Who learns from one run takes its folds
-// for the cloth's own; what several runs have in common is what cloth does in that motion.
+// Folds are sensitive to parameters: a little more friction moves them. Several runs with varied parameters separate
+// what the motion determines from what is particular to one run.
 
-constexpr int kMostClothRuns = 5;
+constexpr int kMaxClothRuns = 5;
 
-/// The options of one of several runs: those given for run 0; in others friction, damping and air density times e^0.1
-/// or e^-0.1, each run by signs of its own. Throws std::invalid_argument for a run outside 0 to kMostClothRuns − 1.
-ClothOptions OfRun(ClothOptions options, int run);
+/// Options of one of several runs: those given for run 0; in others friction, damping and air density are multiplied by
+/// e^0.1 or e^-0.1, with different signs in each run. Throws std::invalid_argument for a run outside 0 to kMaxClothRuns
+/// − 1.
+ClothOptions PerturbedOptions(ClothOptions options, int run);
 
 }  // namespace bodyloom

@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cosine between a vertex' normal and the way out of an obstacle beyond which the inner side touches.
+/// Cosine between a vertex' normal and the direction out of an obstacle beyond which the inner side is in contact.
 constexpr double kInnerSide = 0.3;
 
-/// Around a face through which a limb has come, cloth is not held by limbs.
+/// Around a face that a limb has passed through, limbs do not hold the cloth.
 constexpr double kFreed_m = 0.2;
 
 bool AllFinite(const std::vector<Vector3d>& points) {
@@ -47,7 +47,7 @@ void BuildNeighbours(const MatrixX3i& faces, int num_points, std::vector<int>* b
   for (int i = 0; i < num_points; ++i) (*begin)[i + 1] += (*begin)[i];
 }
 
-/// Whether a + t·along passes through the triangle for some t in [0, 1).
+/// Returns true if a + t·along passes through the triangle for some t in [0, 1).
 bool SegmentCrosses(const Vector3d& a, const Vector3d& along, const Vector3d& p, const Vector3d& q, const Vector3d& r) {
   const Vector3d e1 = q - p, e2 = r - p, across = along.cross(e2);
   const double det = e1.dot(across);
@@ -176,7 +176,7 @@ void ClothSimulation::FindNearestPoints() {
   const MatrixX3d& points = obstacles_.points;
   std::fill(nearest_.begin(), nearest_.end(), -1);
   if (points.rows() == 0) return;
-  // A grid of cells of the search radius: what is nearer lies in a vertex' own cell or one beside it.
+  // A grid with cells of the search radius: points nearer than it lie in a vertex' own cell or a neighbouring one.
   const double cell = options_.search_m;
   const Vector3d low = points.colwise().minCoeff().transpose();
   const Vector3d size = points.colwise().maxCoeff().transpose() - low;
@@ -367,9 +367,9 @@ void ClothSimulation::UpdateVelocities(double h) {
     const Vector3d relative = v_[i] - contact.obstacle_velocity;
     const double leaving = contact.normal.dot(relative);
     const Vector3d sliding = relative - leaving * contact.normal;
-    const double speed = sliding.norm(), most = options_.friction * contact.depth_m / h;
+    const double speed = sliding.norm(), maximum = options_.friction * contact.depth_m / h;
     v_[i] = contact.obstacle_velocity + std::min(leaving, 0.0) * contact.normal;
-    if (speed > most) v_[i] += (1 - most / speed) * sliding;
+    if (speed > maximum) v_[i] += (1 - maximum / speed) * sliding;
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where a ray in a horizontal plane leaves the body: the furthest crossing.
+/// Furthest crossing of a ray in a horizontal plane with the body.
 struct Crossing {
   int face = -1;
   Vector3d barycentric = Vector3d::Zero();
@@ -154,7 +154,7 @@ LooseGarment CutLooseGarment(const MatrixX3d& vertices, const MatrixX3i& faces, 
   return garment;
 }
 
-void Crumple(LooseGarment* garment, uint64_t seed) {
+void AddPositionNoise(LooseGarment* garment, uint64_t seed) {
   HashRandom random(seed, {0x666f6c64});
   for (int v = 0; v < garment->cloth.num_vertices(); ++v) {
     if (garment->cloth.mass_kg[v] == 0) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Row-major dynamic arrays used throughout: one row an item, so that row data is contiguous and matches .npy C order.
+/// Row-major dynamic arrays used throughout: one row per item, so that row data is contiguous and matches .npy C order.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ using RowMatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 using Matrix2x3d = Eigen::Matrix<double, 2, 3>;
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-// Arrays of floats that begin at a cache line, as the SIMD loops want them.
+// Arrays of floats aligned to a cache line, as the SIMD loops require.
 
 struct AlignedDelete {
   void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Unit directions in bins of nearly equal area: the points of a Fibonacci sphere and the nearest one to a direction.
+/// Bins unit directions into nearly equal areas: by the nearest of the points of a Fibonacci sphere.
 #pragma once
 
 #include <Eigen/Core>

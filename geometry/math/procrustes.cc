@@ -66,7 +66,7 @@ AlignmentResult AlignPoints(const MatrixX3d& source, const MatrixX3d& target, co
     spread_target += w * b.squaredNorm();
   }
 
-  // What rounding leaves of coinciding points is not a spread.
+  // A spread within rounding error of coinciding points counts as zero.
   constexpr double kRounding2 = 1e-28;
   if (spread_source <= kRounding2 * total_weight * mean_source.squaredNorm()) spread_source = 0;
   if (spread_target <= kRounding2 * total_weight * mean_target.squaredNorm()) spread_target = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Four floats in a register, on every instruction set, the scalar one included (where Highway's vectors have one
-/// lane). For *_simd.cc files only: included once per instruction set, after <hwy/highway.h>.
+/// Four floats in a register on every instruction set, including the scalar one, where Highway's vectors have one lane.
+/// For *_simd.cc files only: included once per instruction set, after <hwy/highway.h>.
 #if defined(BODYLOOM_GEOMETRY_QUAD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BODYLOOM_GEOMETRY_QUAD_INL_H_
 #undef BODYLOOM_GEOMETRY_QUAD_INL_H_
@@ -55,7 +55,7 @@ HWY_INLINE Quad Max(Quad a, Quad b) {
 HWY_INLINE Quad Min(Quad a, Quad b) {
   return ByLane([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
-/// Where x > y: a, elsewhere b.
+/// a where x > y, b elsewhere.
 HWY_INLINE Quad IfGreater(Quad x, Quad y, Quad a, Quad b) {
   return ByLane([&](int i) { return x.lane[i] > y.lane[i] ? a.lane[i] : b.lane[i]; });
 }

@@ -77,6 +77,15 @@ Matrix3d RightJacobianInverse(const Vector3d& w) {
   return Matrix3d::Identity() + 0.5 * S + c * S * S;
 }
 
+Eigen::Matrix<double, 9, 3> EntriesByIncrement(const Matrix3d& R) {
+  Eigen::Matrix<double, 9, 3> result;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> derivative = R * Skew(Vector3d::Unit(k));
+    result.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(derivative.data());
+  }
+  return result;
+}
+
 Matrix3d NearestRotation(const Matrix3d& M) {
   if (!M.allFinite()) return Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());  // the SVD would not say
   const Eigen::JacobiSVD<Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);

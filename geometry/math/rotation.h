@@ -24,6 +24,9 @@ Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& w);
 /// Inverse of RightJacobian: log(exp(w) exp(d)) = w + RightJacobianInverse(w) d to first order. Valid for |w| < 2π.
 Eigen::Matrix3d RightJacobianInverse(const Eigen::Vector3d& w);
 
+/// ∂vec(R exp([δ]×))/∂δ at δ = 0, 9×3; vec takes a matrix row by row.
+Eigen::Matrix<double, 9, 3> EntriesByIncrement(const Eigen::Matrix3d& R);
+
 /// The rotation nearest to M in the Frobenius norm (polar factor with determinant +1); NaN when M is not finite.
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M);
 
@@ -37,9 +40,8 @@ Eigen::Matrix3d InterpolateRotation(const Eigen::Matrix3d& A, const Eigen::Matri
 /// any perpendicular axis; identity if either is zero.
 Eigen::Matrix3d RotationBetweenDirections(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-// Whether a matrix that somebody gives is a rotation.
-
-/// R·Rᵀ is the identity within `tolerance` (Eigen's isIdentity), and R is no mirror. False for what is not finite.
+/// Returns true if R·Rᵀ is the identity within `tolerance` (Eigen's isIdentity) and det R is positive; false when R is
+/// not finite.
 inline bool IsRotation(const Eigen::Matrix3d& R, double tolerance) {
   return (R * R.transpose()).isIdentity(tolerance) && R.determinant() > 0;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Mesh adjacency: which faces meet at a vertex and which lie across an edge, from position indices: a seam of the UV
-/// map is no boundary here.
+/// Mesh adjacency: the faces that meet at a vertex and those on either side of an edge, by position indices, so a seam
+/// of the UV map is not a boundary.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct MeshAdjacency {
       corner_begin;         ///< V+1: corners at vertex v are corner[corner_begin[v]] … corner[corner_begin[v+1]−1]
   std::vector<int> corner;  ///< 3·face + corner, ascending at each vertex
 
-  /// Of each half-edge the one across it, that is, of the other face at the same two vertices, whichever way it runs;
-  /// −1 at the boundary of the mesh and where more than two faces meet.
+  /// The opposite of each half-edge: that of the other face with the same two vertices, in either direction; −1 at the
+  /// boundary of the mesh and where more than two faces meet.
   std::vector<int> opposite;
   int num_boundary_edges = 0;      ///< edges with one face
   int num_non_manifold_edges = 0;  ///< edges with more than two

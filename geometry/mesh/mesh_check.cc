@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNoOutside = 1e-3;  // |volume| / area^1.5 below which a surface has no inside
 
-/// Sets that are joined two by two.
+/// Disjoint sets that are merged pairwise.
 class JoinedSets {
  public:
   explicit JoinedSets(int count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -206,10 +206,10 @@ class Topology {
                      [](const MeshComponent& a, const MeshComponent& b) { return a.num_faces > b.num_faces; });
   }
 
-  /// Which of the two ways round is outward, and the faces that are not.
+  /// Determines the outward orientation and lists the faces that are turned against it.
   void Orient(const std::vector<int>& members, const std::vector<int>& turn, const std::vector<int>& boundary_of,
               MeshComponent* component, CheckMeshResult* result) const {
-    const Eigen::RowVector3d origin = vertices_.row(faces_(members[0], 0));  // near, for the sake of the digits
+    const Eigen::RowVector3d origin = vertices_.row(faces_(members[0], 0));  // nearby, for precision
     double volume = 0, area = 0;
     int against = 0;
     for (const int f : members) {

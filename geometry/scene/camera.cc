@@ -22,7 +22,8 @@ struct Cubic {
       : value(1 + s * (k1 + s * (k2 + s * k3))), slope(k1 + s * (2 * k2 + 3 * s * k3)) {}
 };
 
-/// Whether r → r·f(r²) rises all the way from the axis to r². Beyond a fold it may rise again, but no light goes there.
+/// Returns true if r → r·f(r²) increases from the axis all the way to r². Beyond a fold it may increase again, outside
+/// the field of view.
 bool RadialMapRises(const std::array<double, 8>& d, double r2) {
   const auto rises_at = [&d](double s) {
     const Cubic n(d[0], d[1], d[4], s), m(d[5], d[6], d[7], s);

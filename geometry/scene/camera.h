@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Cameras: how a point in the camera frame (x right, y down, z forward, metres) becomes a pixel.
+/// Camera models, which project points of the camera frame (x right, y down, z forward, metres) to pixels.
 /// Pixel centres are at integer coordinates (OpenCV): the top-left pixel covers [-0.5, 0.5]².
 #pragma once
 
@@ -17,7 +17,7 @@ enum class CameraModel {
 };
 
 std::string ToString(CameraModel model);
-/// "pinhole" or "weak"; throws std::invalid_argument otherwise.
+/// Parses "pinhole" or "weak"; throws std::invalid_argument for other names.
 CameraModel CameraModelFromString(const std::string& name);
 
 struct Camera {
@@ -35,10 +35,10 @@ struct Camera {
   [[nodiscard]] bool HasDistortion() const;
   [[nodiscard]] Eigen::Matrix3d K() const;
 
-  /// Pixel of `point_in_camera`. Valid for z > kMinDepth (pinhole) and any finite point (weak perspective); elsewhere
-  /// returns false and sets the outputs to zero. The Jacobian, when requested, is d pixel / d point_in_camera.
-  /// Distortion is only meaningful inside the lens' field of view: at and beyond the radius where the radial model
-  /// folds back (d r_distorted / d r <= 0) the point is reported invalid.
+  /// Projects `point_in_camera` to a pixel. Valid for z > kMinDepth (pinhole) and any finite point (weak perspective);
+  /// elsewhere returns false and sets the outputs to zero. The Jacobian, when requested, is d pixel / d
+  /// point_in_camera. Distortion is only meaningful inside the lens' field of view: at and beyond the radius where the
+  /// radial model folds back (d r_distorted / d r <= 0) the point is reported invalid.
   bool Project(const Eigen::Vector3d& point_in_camera, Eigen::Vector2d* pixel,
                Matrix2x3d* d_pixel_d_point = nullptr) const;
 

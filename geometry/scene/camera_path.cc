@@ -47,7 +47,7 @@ Vector3d CentreOf(const CameraPose& camera_from_world) {
 }
 
 CameraPose InterpolatePoses(const CameraPose& a, const CameraPose& b, double s) {
-  // Interpolated translations of turned cameras would bend the way of the centre.
+  // Interpolating translations of rotating cameras would bend the path of the centre.
   CameraPose pose;
   pose.camera_from_world_rotation = InterpolateRotation(a.camera_from_world_rotation, b.camera_from_world_rotation, s);
   const Vector3d centre = (1 - s) * CentreOf(a) + s * CentreOf(b);

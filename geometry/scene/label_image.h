@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A label of every pixel of a rectangle, as a picture and packed.
+/// Label images: one label per pixel of a rectangle, plain and run-length encoded.
 #pragma once
 
 #include <cstddef>
@@ -10,38 +10,37 @@ namespace bodyloom {
 
 /// A detector's label of every pixel of a rectangle of the image. Pixels outside the rectangle are background.
 struct LabelImage {
-  int x_begin = 0, y_begin = 0, width = 0, height = 0;  ///< pixels; negative or empty sizes hold nothing
+  int x_begin = 0, y_begin = 0, width = 0, height = 0;  ///< pixels; with a size of 0 or less it is empty
   std::vector<uint8_t> labels;                          ///< width·height, row-major
   [[nodiscard]] uint8_t At(int x, int y) const {
     if (x < x_begin || y < y_begin || x >= x_begin + width || y >= y_begin + height) return 0;
     return labels[size_t(y - y_begin) * size_t(width) + size_t(x - x_begin)];
   }
-  /// The labels of a whole image, row-major.
+  /// Returns the labels of a whole image, row-major.
   [[nodiscard]] std::vector<uint8_t> Over(int image_width, int image_height) const;
 };
 
-/// The same as runs of equal labels, row after row: what a clip holds thousands of. A mask of a person who is 900
-/// pixels high takes some 20 KB in the place of 400, and a fifth of a millisecond to pack or unpack.
+/// A LabelImage as runs of equal labels, row by row, as clips hold thousands of them. A mask of a person 900 pixels
+/// tall takes about 20 KB instead of 400, and 0.2 ms to pack or unpack.
 class PackedLabels {
  public:
   PackedLabels() = default;
-  /// Whatever the image is, also one whose labels are not as many as its rectangle has pixels: Unpacked() gives it
-  /// back.
-  PackedLabels(const LabelImage& image);  // NOLINT(google-explicit-constructor): a picture in a sequence of them
+  /// Accepts any image, also one whose number of labels differs from its rectangle's pixels; Unpacked() restores it.
+  PackedLabels(const LabelImage& image);  // NOLINT(google-explicit-constructor): a frame of a sequence
 
   [[nodiscard]] LabelImage Unpacked() const;
-  /// LabelImage::At() of it, in logarithmic time; whoever wants most of the pixels unpacks.
+  /// Same as LabelImage::At(), in logarithmic time; to read most of the pixels, unpack.
   [[nodiscard]] uint8_t At(int x, int y) const;
-  /// Holds no label.
+  /// True if there are no labels.
   [[nodiscard]] bool empty() const { return ends_.empty(); }
 
  private:
   int x_begin_ = 0, y_begin_ = 0, width_ = 0, height_ = 0;
-  std::vector<uint32_t> ends_;  ///< of the runs, pixels from the first
+  std::vector<uint32_t> ends_;  ///< ends of the runs, counted in pixels from the first
   std::vector<uint8_t> labels_;
 };
 
-// What of the body's surface the pixels of an image show, as dense detectors say it: a chart and the place in it.
+// Outputs of dense detectors: for each pixel, a chart of the body's surface and coordinates in it.
 
 /// The labels of a rectangle of an image; pixels outside it are background. Rows from top to bottom.
 struct ChartImage {

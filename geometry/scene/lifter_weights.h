@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The lifter: a small temporal network that reads 2D landmarks of a clip and writes 3D landmarks with their
-/// uncertainty. This is its shape and its numbers; neural/lifter trains it, tracking/initialise runs it.
+/// Architecture and weights of the lifter, a small temporal network from the 2D landmarks of a clip to 3D landmarks
+/// with their uncertainty; trained in neural/lifter, evaluated in tracking/initialise.
 ///
 /// x_t (num_inputs) → h = A ∗ x (kernel 3 over time, dilation 1) → blocks h ← h + M silu(D ∗ norm(h)) with D of
 /// kernel 3 and the block's dilation → y = O norm(h). norm is over the channels of one frame, with scale and shift;
@@ -23,7 +23,7 @@
 
 namespace bodyloom {
 
-/// Where things stand in the network's output of one frame.
+/// Layout of the network's output of one frame.
 struct LifterOutput {
   static constexpr int kPoints = 21;     ///< landmarks: CocoNames(), big toes, heels (LifterPointNames())
   static constexpr int kHypotheses = 3;  ///< hypotheses of each limb
@@ -67,7 +67,7 @@ struct LifterWeights {
   [[nodiscard]] int num_inputs() const { return static_cast<int>(input.cols()) / 3; }
   [[nodiscard]] int width() const { return static_cast<int>(input.rows()); }
   [[nodiscard]] size_t num_parameters() const;
-  /// Frames to either side that an output depends on.
+  /// Number of frames on either side that an output depends on.
   [[nodiscard]] int reach() const;
   /// False with the reason when sizes contradict each other or a number is not finite.
   bool IsValid(std::string* why) const;

@@ -13,7 +13,7 @@
 
 namespace bodyloom {
 
-/// A detected 2D landmark. Missing when confidence <= 0 or a coordinate is not finite.
+/// A detected 2D landmark. Missing if confidence <= 0 or a coordinate is not finite.
 struct Keypoint {
   float x = 0, y = 0;    ///< pixels
   float confidence = 0;  ///< clamped to [0, 1] by the readers
@@ -25,7 +25,7 @@ struct KeypointSequence {
   std::vector<std::string> names;  ///< K landmark names in the body's vocabulary (nose, left_eye, …, right_heel)
   std::vector<Keypoint> points;    ///< T·K, frame-major
   std::vector<double> timestamps;  ///< T seconds, strictly increasing
-  int image_width = 0, image_height = 0;  ///< 0 when the file does not say
+  int image_width = 0, image_height = 0;  ///< 0 when unknown
   [[nodiscard]] int num_frames() const { return static_cast<int>(timestamps.size()); }
   [[nodiscard]] int num_points() const { return static_cast<int>(names.size()); }
   [[nodiscard]] const Keypoint& at(int frame, int k) const { return points[size_t(frame) * names.size() + k]; }
@@ -42,37 +42,37 @@ struct DenseKeypoint {
 
 struct DenseSequence {
   std::vector<std::vector<DenseKeypoint>> frames;  ///< T
-  /// The two sources that sigma_px adds up, when they are known: noise of the labels in units of a chart, and of the
-  /// pixels. A detector errs on the surface, so its error in the image is wide across what faces the camera and narrow
-  /// along what is foreshortened; with uv_sigma > 0 the tracker knows that. 0: not known, sigma_px in every direction.
+  /// The two components of sigma_px, when known: noise of the labels in units of a chart, and noise of the pixels. A
+  /// detector's error lies on the surface, so in the image it is large where the surface faces the camera and small in
+  /// foreshortened directions; the tracker models this if uv_sigma > 0. 0: unknown, sigma_px in every direction.
   double uv_sigma = 0, pixel_sigma_px = 0;
   std::vector<double> timestamps;  ///< T seconds
   int image_width = 0, image_height = 0;
   [[nodiscard]] int num_frames() const { return static_cast<int>(frames.size()); }
 };
 
-/// Which part of the person each pixel shows, frame by frame: DensePose's part index, or just a mask.
+/// Part labels of the pixels of each frame: DensePose's part indices, or a mask.
 ///
-/// Labels and the body's charts meet in *parts*, numbers that the caller gives: a pixel with label l shows part
-/// part_of_label[l], and a face of chart c (BodyModelData::face_part) belongs to part part_of_chart[c]. A part may hold
-/// several charts (upper arm outside and inside), and several labels; Merge() joins two parts on both sides. The start
-/// is the identity, so labels 1–24 are the charts 1–24.
+/// Labels and the body's charts are matched by *parts*, numbers that the caller assigns: a pixel with label l shows
+/// part part_of_label[l], and a face of chart c (BodyModelData::face_part) belongs to part part_of_chart[c]. A part may
+/// hold several charts (upper arm outside and inside), and several labels; Merge() joins two parts for both. Initially
+/// the mapping is the identity, so labels 1–24 are the charts 1–24.
 ///   part 0     background: the pixel does not show the person; a chart of part 0 is never labelled and has no term
 ///   part 255   unknown: nothing is known about the pixel (nor about the chart)
 /// A mask has one label for the whole person: AsMask().
 struct PartLabelSequence {
   static constexpr uint8_t kBackground = 0, kUnknown = 255;
-  std::vector<PackedLabels> frames;       ///< T; an empty one is a frame in which nobody was seen
+  std::vector<PackedLabels> frames;       ///< T; empty for a frame without a detected person
   std::vector<double> timestamps;         ///< T seconds, strictly increasing
   int image_width = 0, image_height = 0;  ///< pixels, required; rectangles lie inside the image
   std::array<uint8_t, 256> part_of_label = Identity(), part_of_chart = Identity();
   [[nodiscard]] int num_frames() const { return static_cast<int>(frames.size()); }
   [[nodiscard]] uint8_t PartAt(int frame, int x, int y) const { return part_of_label[frames[frame].At(x, y)]; }
-  /// The part of every pixel of a frame's rectangle.
+  /// Returns the part of every pixel of a frame's rectangle.
   [[nodiscard]] LabelImage PartsOf(int frame) const;
-  /// Labels and charts of `part` belong to `into` from now on.
+  /// Reassigns labels and charts of `part` to `into`.
   void Merge(uint8_t part, uint8_t into);
-  /// Every label from 1 to 254 and every chart becomes part 1.
+  /// Assigns every label from 1 to 254 and every chart to part 1.
   void AsMask();
 
  private:
@@ -82,11 +82,9 @@ struct PartLabelSequence {
 /// COCO's 17 landmark names in order: nose, left_eye, right_eye, left_ear, right_ear, left_shoulder, …, right_ankle.
 const std::vector<std::string>& CocoNames();
 
-// The refusal of a clip that is sound and shows nobody who could be tracked.
-
-/// "path: …": the input could be read, and nobody is in it, or nothing could be estimated from what is. A caller who
-/// runs many clips tells this apart from a file that cannot be used.
-class NothingToTrack : public std::runtime_error {
+/// Error "path: …" for readable input that shows nobody or from which nothing could be estimated, so that callers of
+/// many clips can distinguish it from a file that cannot be used.
+class NoPersonFound : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -7,14 +7,14 @@
 
 namespace bodyloom {
 
-/// What a pixel shows; the names, in this order, are kPersonLabelNames.
+/// Label of a pixel; the names, in this order, are kPersonLabelNames.
 enum class PersonLabel : uint8_t { kBackground, kTop, kBottom, kFace, kHair, kSkin, kShoes };
 inline constexpr int kNumPersonLabels = 7;
 inline constexpr std::array<const char*, kNumPersonLabels> kPersonLabelNames = {"background", "top",  "bottom", "face",
                                                                                 "hair",       "skin", "shoes"};
 
-/// DensePose's parts 0 (background) to 24: torso and upper arms top, legs bottom, head face, lower arms and hands skin,
-/// feet shoes. Others count as top.
+/// Maps DensePose's parts 0 (background) to 24: torso and upper arms to top, legs to bottom, head to face, lower arms
+/// and hands to skin, feet to shoes, others to top.
 inline PersonLabel LabelOfPart(int part) {
   constexpr PersonLabel kTop = PersonLabel::kTop, kBottom = PersonLabel::kBottom, kSkin = PersonLabel::kSkin;
   constexpr std::array<PersonLabel, 25> kLabels = {PersonLabel::kBackground,

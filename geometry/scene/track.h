@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A motion of one body, and a track: a motion with the camera that saw it and how well each frame is known.
+/// A motion of one body, and a track: a motion with its camera, frame status and uncertainty.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,8 @@
 
 namespace bodyloom {
 
-/// T frames of SMPL-style parameters. The frame of `trans` and of the root rotation is whatever the source says
-/// (`y_up` distinguishes worlds with y up from those with z up); tracks are in the camera frame.
+/// T frames of SMPL-style parameters. The frame of `trans` and of the root rotation is that of the source (`y_up`
+/// distinguishes worlds with y up from those with z up); tracks are in the camera frame.
 struct Motion {
   std::string body;                ///< body family: "smpl" (24 joints), "smplh" (52), "smplx" (55)
   RowMatrixXd poses;               ///< T×3J axis-angle, radians
@@ -25,26 +25,25 @@ struct Motion {
   std::vector<double> timestamps;  ///< T seconds
   enum class Up { kY, kZ, kCamera } up = Up::kY;
   [[nodiscard]] int num_frames() const { return static_cast<int>(poses.rows()); }
-  /// Whether frame t has a pose and a place (finite numbers).
+  /// Returns true if frame t has a finite pose and translation.
   [[nodiscard]] bool HasPose(int t) const { return poses.row(t).allFinite() && trans.row(t).allFinite(); }
 };
 
 enum class FrameStatus : uint8_t {
   kTracked = 0,       ///< enough observations, fitted
   kWeak = 1,          ///< fitted, but with few or poor observations
-  kInterpolated = 2,  ///< nothing seen: carried by the neighbours and the priors
+  kInterpolated = 2,  ///< nothing observed: determined by the neighbours and the priors
   kLost = 3,          ///< no estimate (values are NaN)
 };
 
 std::string ToString(FrameStatus status);
 
-/// A Motion in the camera frame together with its camera. All positions in metres, camera frame. Where the camera
-/// moves, they are in the scene (geometry/scene/camera_path.h): a frame that stands still, of which every frame's
-/// camera is known.
+/// A Motion in the camera frame together with its camera. All positions in metres, camera frame. With a moving camera
+/// they are in the scene (geometry/scene/camera_path.h): a static frame, to which every frame's camera is known.
 struct Track {
   Motion motion;  ///< up = kCamera
   Camera camera;  ///< intrinsics shared by all frames
-  /// T rigid motions of a camera that moves, scene to camera; empty: it stands still, and its frame is the scene.
+  /// T rigid motions of a moving camera, scene to camera; empty: the camera is static, and its frame is the scene.
   std::vector<CameraPose> camera_from_scene;
   MatrixX3d weak_camera;                  ///< T×3 (s, tx, ty) per frame for weak perspective; T×0 rows otherwise
   std::vector<FrameStatus> frame_status;  ///< T
@@ -52,18 +51,16 @@ struct Track {
   std::vector<MatrixX3d> coco17;          ///< T of 17×3
   /// T×J standard deviation of each joint's position about the middle of the hips, metres, one axis (NaN: unknown).
   RowMatrixXd joint_sigma;
-  Eigen::VectorXd root_sigma;  ///< T: that of this middle's own position; or empty
-  /// Where up and the ground are; nothing: the track does not say (render/view/floor.h then assumes a level camera).
+  Eigen::VectorXd root_sigma;  ///< T: that of the mid-hip's own position; or empty
+  /// Vertical and ground; absent when unknown (render/view/floor.h then assumes a level camera).
   std::optional<WorldFrame> world;
   [[nodiscard]] int num_frames() const { return motion.num_frames(); }
   [[nodiscard]] bool HasMovingCamera() const { return !camera_from_scene.empty(); }
   /// The camera of frame t: `camera`, with (s, tx, ty) of that frame for weak perspective.
   [[nodiscard]] Camera CameraAt(int t) const;
-  /// Whether frame t has a pose and a camera (finite numbers).
+  /// Returns true if frame t has a finite pose and camera.
   [[nodiscard]] bool HasResult(int t) const;
 };
-
-// Whether a motion that somebody gives is one.
 
 /// Throws std::invalid_argument, naming the caller, unless there is a frame, poses, trans and timestamps have T rows
 /// each, poses 3J columns, and all is finite.

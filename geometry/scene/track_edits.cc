@@ -66,7 +66,7 @@ Track WithShape(const BodyModel& body, const Track& track, const VectorXd& betas
   const Skinner skinner(body);
   const RestPelvis before(skinner, own), after(skinner, wanted);
   const double r = before.height > 0 ? after.height / before.height : 1;
-  const double s = placed == PersonPlacing::kInPicture && before.stature > 0 ? after.stature / before.stature : 1;
+  const double s = placed == PersonPlacing::kInImage && before.stature > 0 ? after.stature / before.stature : 1;
   Track other;
   other.camera = track.camera;
   other.camera_from_scene = track.camera_from_scene;

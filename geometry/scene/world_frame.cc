@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr std::array<const char*, 5> kWorldSourceNames = {"level camera assumed", "vertical", "ground",
                                                           "several people", "given"};
-constexpr double kLeastHeading = 0.1;  ///< sine of the 6° off the vertical
+constexpr double kMinHeading = 0.1;  ///< sine of the 6° off the vertical
 
 }  // namespace
 
@@ -78,8 +78,8 @@ WorldFrame WorldOverGround(const Vector3d& up_in_camera, double camera_height_m)
                  ", expected a direction and a number");
   const Vector3d up = up_in_camera.normalized();
   Vector3d ahead = Vector3d::UnitZ() - up.z() * up;
-  if (ahead.norm() < kLeastHeading) {
-    // Looking down, the picture's upper edge is ahead; looking up, its lower one.
+  if (ahead.norm() < kMinHeading) {
+    // Looking down, the image's upper edge is ahead; looking up, its lower one.
     const Vector3d edge = up.z() < 0 ? Vector3d(0, -1, 0) : Vector3d(0, 1, 0);
     ahead = edge - up.dot(edge) * up;
   }

@@ -21,16 +21,16 @@ namespace bodyloom::describe_internal {
 
 // Memory that the workers of DescriptorMaps share, so that none is allocated for every map.
 
-/// Three planes as they go to the file.
+/// Three planes in the layout of the file.
 using Map = std::vector<char>;
 
-/// What one worker needs to make maps.
+/// Memory of one worker.
 struct Scratch {
   NormalScratch normals;
   std::vector<float> vertices, padded, planes;  ///< V×3, V×4, three planes
 };
 
-/// Hands out scratch memory, one a worker at a time. ScratchType is Scratch or derives from it.
+/// Lends scratch memory to workers, each to one worker at a time. ScratchType is Scratch or derives from it.
 template <typename ScratchType>
 class ScratchPool {
  public:
@@ -61,7 +61,7 @@ class ScratchPool {
   std::vector<std::unique_ptr<ScratchType>> free_;
 };
 
-/// Room for maps: one that is no longer needed, or a new one. Either is zero where no texel is.
+/// Reuses the memory of maps that are no longer needed. A map is zero where there is no texel.
 class MapPool {
  public:
   explicit MapPool(size_t map_bytes) : map_bytes_(map_bytes) {}
@@ -86,20 +86,22 @@ class MapPool {
   std::vector<Map> free_;
 };
 
-/// Immutable and safe to share between threads. Texels that show nothing are left as they are.
+/// Immutable and safe to share between threads. Texels that show no surface are not written.
 class SurfaceMaps {
  public:
-  /// Borrows the body. Throws std::invalid_argument when it has no UV map. `normals`: whether any will be requested.
+  /// Borrows the body. Throws std::invalid_argument when it has no UV map. `normals`: true if normals will be
+  /// requested.
   SurfaceMaps(const BodyModel& body, const UvTexelOptions& texels, NormalWeighting weighting, bool normals);
 
   [[nodiscard]] const UvTexelTable& texels() const { return table_; }
   [[nodiscard]] size_t num_pixels() const { return static_cast<size_t>(baker_.num_pixels()); }
 
-  /// Unit normals of vertices (V×3, from the root). Returns the texels whose corners' normals cancelled out.
+  /// Bakes the unit normals of vertices (V×3, relative to the root). Returns the number of texels whose corners'
+  /// normals cancel out.
   int Normals(std::span<const float> vertices, const PosedSkeleton& skeleton, Scratch* scratch, NormalSummary* summary,
               std::span<float> planes) const;
 
-  /// The vertices' velocities (V×3).
+  /// Bakes the vertices' velocities (V×3).
   void Velocities(std::span<const float> velocities, Scratch* scratch, std::span<float> planes) const;
 
  private:
@@ -110,7 +112,7 @@ class SurfaceMaps {
   MatrixX3f template_normals_;
 };
 
-// The posed surfaces of the frames that are being described: those that two neighbouring chunks need are posed once.
+// Posed surfaces of the frames being described; frames that two neighbouring chunks need are posed once.
 
 class PosedFrames {
  public:
@@ -118,10 +120,10 @@ class PosedFrames {
   PosedFrames(const Skinner& skinner, const ShapedBody& shape, const std::vector<std::optional<BodyPose>>& poses,
               int num_vertices, int room);
 
-  /// Poses the frames that are not there yet, releases those not in `needed` (ascending). Returns how many it posed.
+  /// Poses the frames of `needed` (ascending) that are not held yet and releases all others. Returns the number posed.
   int Need(std::span<const int> needed);
 
-  /// V×3, relative to the root, of a frame in the last Need.
+  /// Vertices of a frame in the last Need: V×3, relative to the root.
   [[nodiscard]] std::span<const float> Vertices(int t) const {
     return {vertices_.data() + stride_ * place_of_frame_[t], stride_};
   }

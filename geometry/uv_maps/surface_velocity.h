@@ -2,20 +2,20 @@
 /// Velocities of a body's vertices, m/s.
 ///
 /// By differences (DifferenceVertices): v = Σ_k w_k x_k with the weights of a VelocityStencil, on vertices relative to
-/// the root in float and the root in double, so the distance from the origin costs nothing.
+/// the root in float and the root in double, so precision does not depend on the distance from the origin.
 ///
 /// Analytically (VelocitySkinner): the body model's exact derivative in the direction of the parameters' rates,
 ///   v̇ = Σ_j w_j ( Ġ_j v_rest + ṫ_j ) + Σ_j w_j G_j ( posedirs · vec Ṙ ),    Ġ_j = Ġ_p R_j + G_p R_j [ω_j]×,
 /// two more passes of the skinning loop (geometry/body/skinning_simd.h) instead of a Jacobian of 3V×3J. The rates come
-/// from the same stencils on the group: ω_j = Σ_k w_k log(R_j(t)ᵀ R_j(t_k)). Noise of vertices plays no part; what it
-/// costs and gains beside differences stands in docs/descriptors.md.
+/// from the same stencils on the group: ω_j = Σ_k w_k log(R_j(t)ᵀ R_j(t_k)). It does not amplify noise of the vertices;
+/// cost and accuracy compared with differences: docs/descriptors.md.
 ///
 /// Frames. A velocity is that of the coordinates in one frame:
 ///   camera   d x_camera/dt, the camera's own motion included
 ///   world    d x_world/dt, x_world = R (x_camera − t) with the camera's pose (geometry/scene/camera.h)
 ///   body     d/dt [ Rᵀ (x − x_root) ] = Rᵀ ( v − v_root − ω × (x − x_root) ): motion relative to the pelvis
-/// So poses are carried into the frame first (PosesInFrame) and everything after that, normals included, is the same; a
-/// body that moves as a rigid whole has body velocities of exactly zero by any scheme.
+/// So poses are transformed into the frame first (PosesInFrame), and all later steps, normals included, are the same; a
+/// body that moves rigidly has body velocities of exactly zero in any scheme.
 #pragma once
 
 #include <optional>
@@ -36,9 +36,9 @@ enum class SurfaceFrame { kCamera, kWorld, kBody };
 
 std::string ToString(SurfaceFrame frame);
 
-/// The poses of a track's frames in `frame`; an empty optional where the track has none (lost frames and values that
-/// are not finite). Weak perspective: (tx, ty) of a frame, metres, are part of its position. `camera_pose` is for
-/// kWorld. In the body frame the root stands still at its rest place.
+/// The poses of a track's frames in `frame`; an empty optional for lost frames and values that are not finite. Weak
+/// perspective: (tx, ty) of a frame, metres, are part of its position. `camera_pose` is for kWorld. In the body frame
+/// the root stays at its rest position.
 std::vector<std::optional<BodyPose>> PosesInFrame(const BodyModel& body, const Track& track, SurfaceFrame frame,
                                                   const CameraPose& camera_pose = {});
 

@@ -12,7 +12,7 @@
 
 namespace bodyloom::uv_bake_internal {
 
-/// Four texels from `pixel` on, a multiple of four; texels that show nothing have weights of zero.
+/// Four texels from `pixel` on, a multiple of four; texels that show no surface have zero weights.
 struct Block {
   int32_t pixel;
   int32_t vertex[4][3];
@@ -20,12 +20,12 @@ struct Block {
 };
 
 /// planes[c][pixel] = Σ weight · attributes[4 vertex + c] for c < num_planes (1 to 4); texels outside all blocks are
-/// left alone. A block that reaches beyond num_pixels stores only what lies before.
+/// not written. Of a block that extends beyond num_pixels, only the texels before it are stored.
 void BakeGroup(const Block* blocks, int num_blocks, int num_pixels, const float* attributes, int num_planes,
                float* const* planes);
 
 /// Two full groups (eight planes) at once, the second group_stride values behind the first: indices and weights are
-/// read once for both. The same numbers.
+/// read once for both. Same results as BakeGroup.
 void BakeTwoGroups(const Block* blocks, int num_blocks, int num_pixels, const float* attributes, int64_t group_stride,
                    float* const* planes);
 

@@ -199,7 +199,7 @@ class TableBuilder {
     for (int step = 0; step < kMaxSteps; ++step) {
       const int across = charts_.mesh.opposite[h];
       if (across < 0) return;  // clamped to the boundary by the caller
-      // Whether the two faces run the shared edge in opposite directions (they should) or in the same one.
+      // The two faces traverse the shared edge in opposite directions when consistently oriented, else in the same one.
       const bool reversed = body_.data().faces(across / 3, across % 3) != body_.data().faces(h / 3, h % 3);
       const Vector2d from = reversed ? end : start, to = reversed ? start : end;
       const Vector2d third = Flattened(across, &length);

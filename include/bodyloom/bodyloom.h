@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What most programs need of the library, in one header: bodies, cameras and tracks; detections and videos read; a
-/// clip tracked, offline and live, and its problem for Ceres; descriptors, overlays and files written. Networks
-/// (bodyloom/neural/…) and whole jobs (bodyloom/pipelines/…) are included by themselves.
+/// The headers that most programs use: bodies, cameras and tracks; readers of detections and videos; tracking of a
+/// clip, offline and live, and its problem for Ceres; writers of descriptors, overlays and files. Networks
+/// (bodyloom/neural/…) and pipelines (bodyloom/pipelines/…) are included by themselves.
 #pragma once
 
 #include "bodyloom/data_tools/body/body_io.h"

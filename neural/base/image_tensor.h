@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Images as tensors and back. Internal: includes LibTorch.
+/// Converts images to tensors and back. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -14,8 +14,8 @@ torch::Tensor ToTensor(const Image& image);
 /// 3×H×W or 1×3×H×W RGB → 8 bits, ⌊255 x + ½⌋ with x clamped to [0, 1] (NaN: 0).
 Image ToImage(const torch::Tensor& rgb);
 
-/// B×C×H×W moved by (x, y) pixels, right and down; what comes in is zero. Where a window follows a person, this lays
-/// the picture of the frame before over this one: (x, y) is where the window of that frame lies in this frame's.
+/// Shifts B×C×H×W by (x, y) pixels, right and down, with zero padding. For windows that follow a person it aligns the
+/// previous frame with the current one: (x, y) is the position of the previous window in the current one.
 torch::Tensor Shifted(const torch::Tensor& image, int x, int y);
 
 }  // namespace bodyloom

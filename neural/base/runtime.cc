@@ -20,7 +20,7 @@
 namespace bodyloom {
 namespace {
 
-/// The file of the shared object that a global symbol comes from.
+/// The file of the shared object that defines a global symbol.
 std::string LibraryOf(const char* symbol) {
   void* address = dlsym(RTLD_DEFAULT, symbol);
   Dl_info info;
@@ -63,8 +63,8 @@ std::string BlasAdvice(const std::string& blas_path, const std::string& blas_cor
 NeuralRuntime StartNeuralRuntime(int num_threads) {
   BODYLOOM_CHECK(num_threads >= 0, "num_threads is ", num_threads, ", expected 0 (all cores) or more");
 #if defined(__GLIBC__)
-  // Tensors come and go every operation; given back to the system each time they cost their page faults again: 40 % of
-  // a training run's system time, 4 % of all of it.
+  // Every operation allocates and frees tensors; returning them to the system each time costs page faults: 40 % of the
+  // system time and 4 % of the total time of a training run.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, INT_MAX);
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The runtime of LibTorch: version, threads, and the matrix library behind it, with a warning where that one is slow.
+/// The runtime of LibTorch: version, threads, and its matrix library, with warnings if that is slow.
 #pragma once
 
 #include <string>
@@ -12,26 +12,27 @@ struct NeuralRuntime {
   int num_cores = 0;          ///< cores this process may use
   int num_threads = 0;        ///< threads LibTorch uses inside one operation
   std::string blas_path;      ///< shared object that provides sgemm_, links resolved; empty when linked statically
-  std::string blas_core;      ///< the processor OpenBLAS takes this one for; empty for other libraries
+  std::string blas_core;      ///< processor type detected by OpenBLAS; empty for other libraries
   std::vector<std::string> warnings;
 };
 
-/// Lets LibTorch use `num_threads` threads (0: every core this process may use; LibTorch itself starts with one on some
-/// machines) and reports what it runs on. Call once, before any tensor work. Throws std::invalid_argument when
-/// num_threads is negative.
+/// Sets LibTorch's number of threads (0: every core this process may use; LibTorch defaults to one on some machines)
+/// and returns its properties. Call once, before any tensor work. Throws std::invalid_argument when num_threads is
+/// negative.
 NeuralRuntime StartNeuralRuntime(int num_threads = 0);
 
-/// Renderers and trainers made from now on live on "cpu" or "cuda" (the first card), all of a process on the same.
-/// Throws std::invalid_argument for another name, std::runtime_error when there is no such device here.
+/// Selects the device, "cpu" or "cuda" (the first GPU), of renderers and trainers created from now on; all of a process
+/// must use the same one. Throws std::invalid_argument for another name, std::runtime_error when the device is not
+/// available.
 void UseNeuralDevice(const std::string& device);
 
-/// Why matrix products will be slow with this library on this processor and what to do, or "" when there is nothing to
-/// say. Measured on an AVX-512 processor, 2048² sgemm on two threads: reference BLAS 6 GFLOP/s, ATLAS 35, OpenBLAS that
-/// takes the processor for a "Prescott" 77, the same told that it is a SkylakeX 412.
+/// Explains a slow combination of matrix library and processor and its remedy; "" if there is none. Measured on an
+/// AVX-512 processor, 2048² sgemm on two threads: reference BLAS 6 GFLOP/s, ATLAS 35, OpenBLAS with the processor
+/// detected as "Prescott" 77, as SkylakeX 412.
 std::string BlasAdvice(const std::string& blas_path, const std::string& blas_core, bool cpu_has_avx2,
                        bool cpu_has_avx512);
 
-/// One fact a line, warnings last.
+/// One property per line, warnings last.
 std::string ToText(const NeuralRuntime& runtime);
 
 }  // namespace bodyloom

@@ -72,7 +72,7 @@ std::string MotionCard(const MotionConfig& config) {
   if (config.motion && config.descriptor == MotionDescriptor::kSurface) {
     add("motion encoder E, a frame's UV maps", model->encoder, {1, config.motion_channels, uv, uv});
   } else if (config.motion) {
-    add("motion encoder E, a frame's picture and those before it", model->encoder,
+    add("motion encoder E, a frame's image and those before it", model->encoder,
         {1, config.motion_channels, side, side});
   }
   if (config.shape) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The architecture card of the pose-guided renderer: every network's parameters, shapes and multiply–adds, as text.
+/// Architecture cards of the renderers: every network's parameters, shapes and multiply–adds, as text.
 #pragma once
 
 #include <string>
@@ -10,21 +10,17 @@
 
 namespace bodyloom {
 
-/// A section a network (neural/networks/architecture_card.h), of one frame of the profile's whole window once the
-/// source is encoded: SilNet, GarNet, RenderNet, and the discriminator of training; what encoding the source costs is a
-/// line of its own. Networks that are left out have no section.
+/// Card of the pose-guided renderer with one section per network (neural/networks/architecture_card.h), for one frame
+/// of the profile's whole window with the source already encoded: SilNet, GarNet, RenderNet, and the discriminator of
+/// training; the cost of encoding the source is a separate line. Networks that are left out have no section.
 std::string GuidedCard(const GuidedConfig& config);
 
-// The architecture card of the motion-dependent renderer: every network's parameters, shapes and multiply–adds, as
-// text.
-
-/// A section a network (neural/networks/architecture_card.h), of one frame of the profile's whole image.
+/// Card of the motion-dependent renderer with one section per network, for one frame of the profile's whole image.
 std::string MotionCard(const MotionConfig& config);
 
-// The architecture card of the one-photo renderer: every network's parameters, shapes and multiply–adds, as text.
-
-/// A section a network (neural/networks/architecture_card.h): FeatureNet of a photo's texture, RenderNet of one frame
-/// of the profile's whole image, the discriminators of a picture in training. A variant has those that it is made of.
+/// Card of the one-photo renderer with one section per network: FeatureNet for a photo's texture, RenderNet for one
+/// frame of the profile's whole image, the discriminators for an image in training. Variants list only the networks
+/// that they use.
 std::string PhotoCard(const PhotoConfig& config);
 
 }  // namespace bodyloom

@@ -18,10 +18,10 @@
 namespace bodyloom {
 namespace {
 
-/// DensePose's mean colour, to which its networks' own padding amounts: 103.53, 116.28, 123.675.
+/// DensePose's mean colour, equivalent to the networks' own padding: 103.53, 116.28, 123.675.
 constexpr Colour kMeanColour = {124, 116, 104};
 
-/// The line of a message of LibTorch's that says what is wrong: after the heading, before the stack.
+/// Extracts the line with the cause from a message of LibTorch: after the heading, before the stack.
 std::string OneLine(const std::exception& error) {
   const auto* from_torch = dynamic_cast<const c10::Error*>(&error);
   const std::string text = from_torch != nullptr ? from_torch->what_without_backtrace() : error.what();
@@ -46,7 +46,7 @@ torch::jit::Module Load(const std::string& path) {
   }
 }
 
-/// Half floats become floats, and everything goes to the networks' device.
+/// Converts half floats to floats and moves everything to the networks' device.
 void Prepare(torch::jit::Module* module) {
   const auto convert = [](const torch::Tensor& tensor) {
     const bool is_half = tensor.scalar_type() == torch::kHalf || tensor.scalar_type() == torch::kBFloat16;
@@ -59,17 +59,17 @@ void Prepare(torch::jit::Module* module) {
 
 DensePoseForm FormOf(const torch::jit::Module& module, const std::string& path) {
   constexpr const char* kExpected =
-      ", expected DensePose's: a picture in; boxes, coarse and fine segmentation, u and v out, as five tensors or as a "
+      ", expected DensePose's: an image in; boxes, coarse and fine segmentation, u and v out, as five tensors or as a "
       "dictionary of tensors";
   const auto forward = module.find_method("forward");
   if (!forward) throw std::runtime_error(path + ": the program has no forward()" + kExpected);
   const c10::FunctionSchema& schema = forward->function().getSchema();
   const auto& arguments = schema.arguments();  // the first is the module itself
-  bool takes_picture = arguments.size() >= 2 && arguments[1].type()->kind() == c10::TypeKind::TensorType;
-  for (size_t i = 2; i < arguments.size(); ++i) takes_picture = takes_picture && arguments[i].default_value();
-  if (!takes_picture) {
-    throw std::runtime_error(Concatenate(path, ": forward() takes ", arguments.size() - 1,
-                                         " arguments that are not one picture", kExpected));
+  bool takes_image = arguments.size() >= 2 && arguments[1].type()->kind() == c10::TypeKind::TensorType;
+  for (size_t i = 2; i < arguments.size(); ++i) takes_image = takes_image && arguments[i].default_value();
+  if (!takes_image) {
+    throw std::runtime_error(
+        Concatenate(path, ": forward() takes ", arguments.size() - 1, " arguments that are not one image", kExpected));
   }
   std::optional<DensePoseForm> form;
   if (schema.returns().size() == 1) form = DensePoseFormOf(*schema.returns()[0].type());
@@ -80,16 +80,16 @@ DensePoseForm FormOf(const torch::jit::Module& module, const std::string& path) 
   return *form;
 }
 
-Image PaddedToSquare(const Image& picture) {
-  const int side = std::max(picture.width, picture.height);
+Image PaddedToSquare(const Image& image) {
+  const int side = std::max(image.width, image.height);
   Image square(side, side, kMeanColour);
-  Paste(picture, 0, 0, &square);
+  Paste(image, 0, 0, &square);
   return square;
 }
 
-bool IsInside(const ChartDetection& box, const Image& picture) {
+bool IsInside(const ChartDetection& box, const Image& image) {
   const double x = (box.x0 + box.x1) / 2, y = (box.y0 + box.y1) / 2;
-  return x >= 0 && y >= 0 && x <= picture.width && y <= picture.height;
+  return x >= 0 && y >= 0 && x <= image.width && y <= image.height;
 }
 
 }  // namespace
@@ -100,8 +100,8 @@ struct DensePoseNetwork::Impl {
   DensePoseForm form = DensePoseForm::kTuple;
   bool rgb = true;
 
-  [[nodiscard]] torch::Tensor Input(const Image& picture) const {
-    const Image square = PaddedToSquare(picture);
+  [[nodiscard]] torch::Tensor Input(const Image& image) const {
+    const Image square = PaddedToSquare(image);
     torch::Tensor pixels =
         torch::from_blob(const_cast<uint8_t*>(square.bgr.data()), {square.height, square.width, 3}, torch::kByte);
     if (rgb) pixels = pixels.flip(2);
@@ -109,12 +109,12 @@ struct DensePoseNetwork::Impl {
     return OnDevice(pixels.contiguous().clone());
   }
 
-  [[nodiscard]] c10::IValue Forward(const Image& picture) const {
+  [[nodiscard]] c10::IValue Forward(const Image& image) const {
     try {
-      return module.forward({Input(picture)});
+      return module.forward({Input(image)});
     } catch (const std::exception& error) {
-      throw std::runtime_error(Concatenate(path, ": the network failed on a picture of ", picture.width, "x",
-                                           picture.height, " pixels (", OneLine(error), ")"));
+      throw std::runtime_error(Concatenate(path, ": the network failed on an image of ", image.width, "x", image.height,
+                                           " pixels (", OneLine(error), ")"));
     }
   }
 };
@@ -130,22 +130,22 @@ DensePoseNetwork::~DensePoseNetwork() = default;
 DensePoseNetwork::DensePoseNetwork(DensePoseNetwork&&) noexcept = default;
 DensePoseNetwork& DensePoseNetwork::operator=(DensePoseNetwork&&) noexcept = default;
 
-std::vector<ChartDetection> DensePoseNetwork::Detect(const Image& picture) const {
-  BODYLOOM_CHECK(!picture.empty(), "DensePose: an empty picture");
+std::vector<ChartDetection> DensePoseNetwork::Detect(const Image& image) const {
+  BODYLOOM_CHECK(!image.empty(), "DensePose: an empty image");
   const torch::NoGradGuard no_grad;
-  // Without it the first pictures are spent on programs for their exact numbers of people.
+  // Otherwise time of the first images is spent on specialising for their exact numbers of people.
   const torch::jit::GraphOptimizerEnabledGuard no_specialising(false);
-  const DensePoseOutput output = CheckedDensePoseOutput(impl_->Forward(picture), impl_->form, impl_->path);
+  const DensePoseOutput output = CheckedDensePoseOutput(impl_->Forward(image), impl_->form, impl_->path);
   std::vector<ChartDetection> people;
   for (int64_t i = 0; i < output.boxes.size(0); ++i) {
     const float* box = output.boxes.data_ptr<float>() + 4 * i;
     ChartDetection person = {box[0], box[1], box[2], box[3], output.scores.data_ptr<float>()[i], {}};
-    if (!IsInside(person, picture)) continue;
+    if (!IsInside(person, image)) continue;
     const auto planes_of = [i](const torch::Tensor& planes) { return planes[i].data_ptr<float>(); };
     const ChartPlanes planes = {int(output.coarse.size(1)), int(output.coarse.size(2)), int(output.coarse.size(3)),
                                 planes_of(output.coarse),   planes_of(output.fine),     planes_of(output.u),
                                 planes_of(output.v)};
-    person.charts = PasteCharts(planes, person, picture.width, picture.height);
+    person.charts = PasteCharts(planes, person, image.width, image.height);
     const std::vector<uint8_t>& part = person.charts.part;
     if (std::any_of(part.begin(), part.end(), [](uint8_t p) { return p > 0; })) people.push_back(std::move(person));
   }

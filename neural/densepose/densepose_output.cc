@@ -85,7 +85,7 @@ DensePoseOutput CheckedDensePoseOutput(const c10::IValue& value, DensePoseForm f
     throw std::runtime_error(
         Concatenate(path, ": the network's scores have shape ", output.scores.sizes(), ", expected [", n, "]"));
   }
-  if (n == 0) return output;  // the planes of nobody may have any shape
+  if (n == 0) return output;  // without people the planes may have any shape
   CheckPlanes(output.coarse, "coarse segmentation", output, 0, path);
   CheckPlanes(output.fine, "fine segmentation", output, kFine, path);
   CheckPlanes(output.u, "u", output, kFine, path);

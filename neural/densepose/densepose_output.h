@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The two forms of DensePose's answer as one set of checked tensors. Internal: includes LibTorch.
+/// Converts both forms of DensePose's output to one set of checked tensors. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/script.h>
@@ -11,10 +11,10 @@ namespace bodyloom {
 
 enum class DensePoseForm { kTuple, kDict };
 
-/// By the declared type of what a `forward` returns: five tensors, or a dictionary of tensors by text; none otherwise.
+/// Form of a `forward` by its declared return type: five tensors, or a dictionary of tensors by text; none otherwise.
 std::optional<DensePoseForm> DensePoseFormOf(const c10::Type& returned);
 
-/// Of n people; floats in C order on the CPU.
+/// Output for n people; floats in C order on the CPU.
 struct DensePoseOutput {
   torch::Tensor boxes;       ///< n×4
   torch::Tensor scores;      ///< n; ones in the tuple form
@@ -22,8 +22,8 @@ struct DensePoseOutput {
   torch::Tensor fine, u, v;  ///< n×25×h×w
 };
 
-/// Throws std::runtime_error "path: …" for a number of outputs, a key or a shape that is not as above; `value` must
-/// have the form's type.
+/// Checks and converts `value`, which must have the form's type. Throws std::runtime_error "path: …" for a number of
+/// outputs, a key or a shape other than the above.
 DensePoseOutput CheckedDensePoseOutput(const c10::IValue& value, DensePoseForm form, const std::string& path);
 
 }  // namespace bodyloom

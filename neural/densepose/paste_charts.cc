@@ -64,10 +64,10 @@ ChartImage PasteCharts(const ChartPlanes& planes, const ChartDetection& box, int
       };
       const auto strongest = [&](const float* channels, int count) {
         int best = 0;
-        float most = at(channels, 0);
+        float maximum = at(channels, 0);
         for (int k = 1; k < count; ++k) {
           const float logit = at(channels, k);
-          if (logit > most) most = logit, best = k;
+          if (logit > maximum) maximum = logit, best = k;
         }
         return best;
       };

@@ -31,7 +31,7 @@ struct Sample {
   float weight[4] = {0, 0, 0, 0};
 };
 
-/// The cell before `at`, and the one after it with its weight; past the last cell both are that one.
+/// The cell before `at`, and the one after it with its weight; beyond the last cell both are the last.
 struct Between {
   Between(float at, int64_t cells) {
     at = std::max(at, 0.0F);
@@ -58,7 +58,7 @@ Sample SampleAt(float y, float x, int64_t height, int64_t width) {
   return sample;
 }
 
-/// Where a region's samples lie along one axis: `count` in each of `bins`.
+/// Positions of a region's samples along one axis: `count` in each of `bins`.
 struct Axis {
   Axis(float begin, float end, double scale, int64_t bins, int64_t sampling_ratio, bool aligned) {
     const float offset = aligned ? 0.5F : 0;

@@ -15,7 +15,7 @@ std::vector<int> ChoosePhotos(const PhotoSource& people, int person, int count) 
     PhotoFrame frame;
     people.fill(person, f, &frame);
     CoherentMaps maps = EmptyMaps(frame.texture_size, people.texel_parts);
-    FillEmptyTexels(frame, OwnPicture(frame), 1, {}, &maps);
+    FillEmptyTexels(frame, OwnImage(frame), 1, {}, &maps);
     shown[f] = std::move(maps.from);
     faces[f] = static_cast<int>(std::count(frame.labels.begin(), frame.labels.end(), uint8_t{3}));
   }
@@ -23,7 +23,7 @@ std::vector<int> ChoosePhotos(const PhotoSource& people, int person, int count) 
   std::vector<uint8_t> seen(people.texel_parts.size());
   while (static_cast<int>(chosen.size()) < std::min(count, frames)) {
     int best = -1;
-    int64_t most = -1;
+    int64_t maximum = -1;
     for (int f = 0; f < frames; ++f) {
       if (std::find(chosen.begin(), chosen.end(), f) != chosen.end()) continue;
       int64_t gain = faces[f];
@@ -31,8 +31,8 @@ std::vector<int> ChoosePhotos(const PhotoSource& people, int person, int count) 
         gain = 0;
         for (size_t i = 0; i < seen.size(); ++i) gain += shown[f][i] != 0 && seen[i] == 0 ? 1 : 0;
       }
-      if (gain > most) {
-        most = gain;
+      if (gain > maximum) {
+        maximum = gain;
         best = f;
       }
     }

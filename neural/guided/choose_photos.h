@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Chooses the pictures of a person to animate from.
+/// Chooses the images of a person to be used as sources.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,8 @@
 
 namespace bodyloom {
 
-/// `count` frames (fewer when there are not as many): first the one with most of the face in it, for the method takes
-/// its source to be seen from the front; then each time the one that shows most texels of the person that those before
-/// do not show. Lower numbers win ties.
+/// Chooses `count` frames (fewer if there are fewer): first the one with the largest visible face, since the method
+/// expects a frontal source; then greedily the one that adds the most unseen texels. Ties go to lower numbers.
 std::vector<int> ChoosePhotos(const PhotoSource& people, int person, int count);
 
 }  // namespace bodyloom

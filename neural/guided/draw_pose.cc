@@ -8,14 +8,14 @@ namespace bodyloom {
 
 using torch::Tensor;
 
-PersonPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
-                         const PseudoPicture& pseudo, int reach, double* share) {
+RenderedPerson DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
+                          const PseudoImage& pseudo, int reach, double* share) {
   GuidedModelImpl& networks = **model;
   const int size = networks.config.profile.image_size, multiple = networks.config.Multiple();
   BODYLOOM_CHECK(frame.size == size && pseudo.size == size, "pose-guided renderer: a frame of ", frame.size,
                  " px and pseudo inputs of ", pseudo.size, ", expected ", size);
   const torch::NoGradGuard no_grad;
-  PhotoFrame pose;  // without the picture, which a box must not know
+  PhotoFrame pose;  // without the image, on which the box must not depend
   pose.size = size;
   pose.parts = frame.parts;
   const std::span<const PhotoFrame> one(&pose, 1);
@@ -33,13 +33,13 @@ PersonPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const P
   GuidedResult result = networks.forward(source, pose_map, known, box);
   if (reach > 0) {
     const Tensor body = (pose_map.amax(1, true) > 0).to(torch::kFloat);
-    // Squares, one side after the other: a row's maximum of columns' maxima.
+    // Separable dilation by squares: maximum over columns, then over rows.
     const Tensor near = torch::max_pool2d(torch::max_pool2d(body, {1, 2 * reach + 1}, 1, {0, reach}),
                                           {2 * reach + 1, 1}, 1, {reach, 0});
     result.image = result.image * near;
     result.silhouette = result.silhouette * near;
   }
-  return PictureOf(result, known, 0, box, multiple, size);
+  return RenderedPersonOf(result, known, 0, box, multiple, size);
 }
 
 }  // namespace bodyloom

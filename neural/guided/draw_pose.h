@@ -8,10 +8,10 @@
 
 namespace bodyloom {
 
-/// The networks see the box of cells that the body, grown by `reach` pixels, lies in; what is farther from the body
-/// than that is background. reach 0: the whole window. An empty picture where the frame shows no body. `share` (may be
-/// null): of the window that was computed.
-PersonPicture DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
-                         const PseudoPicture& pseudo, int reach, double* share);
+/// The networks see the box of cells around the body grown by `reach` pixels; pixels farther from the body are
+/// background. reach 0: the whole window. The image is empty if the frame shows no body. `share` (may be null):
+/// computed share of the window.
+RenderedPerson DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
+                          const PseudoImage& pseudo, int reach, double* share);
 
 }  // namespace bodyloom

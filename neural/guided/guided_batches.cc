@@ -35,14 +35,14 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
   GuidedPseudo pseudo = PseudoOf(target, known);
   if (config.profile.contour_hints) {
     const SourceBody body = {people.texel_parts, {}, neighbours, {}, config.source_labels};
-    std::vector<PseudoPicture> warped;
+    std::vector<PseudoImage> warped;
     for (int b = 0; b < batch; ++b) {
       const CoherentMaps maps = MapsOfSource(std::span(&sources[b], 1), body, MapCompletion::kNearest, true, {}).maps;
       warped.push_back(LookUp(maps, targets[b]));
     }
     const GuidedPseudo of_source = PseudoOf(warped);
     pseudo.contour_classes = of_source.classes;
-    pseudo.extent = of_source.extent;
+    pseudo.clothes_offset = of_source.clothes_offset;
   }
   result.pseudo = CroppedEach(pseudo, result.boxes, multiple);
   return result;
@@ -51,12 +51,12 @@ GuidedBatch MakeGuidedBatch(const PhotoSource& people, const GuidedConfig& confi
 namespace {
 
 constexpr int kCharts = 25;
-constexpr int kMostPatches = 6;
-constexpr double kSmallest = 0.04, kLargest = 0.3;  ///< sides of patches, of the body's box
+constexpr int kMaxPatches = 6;
+constexpr double kSmallest = 0.04, kLargest = 0.3;  ///< sides of patches, as shares of those of the body's box
 constexpr double kHidesCharts = 0.35;               ///< share of samples that lose whole charts
-constexpr double kHiddenCharts = 0.35;              ///< share of those that are lost
+constexpr double kHiddenCharts = 0.35;              ///< share of the charts that are lost
 
-/// `purpose` keeps choices apart that are drawn for one place.
+/// `purpose` separates the random streams of one place.
 std::mt19937_64 Generator(uint64_t seed, int64_t step, int place, uint32_t purpose) {
   std::seed_seq sequence{static_cast<uint32_t>(seed),  static_cast<uint32_t>(seed >> 32),
                          static_cast<uint32_t>(step),  static_cast<uint32_t>(step >> 32),
@@ -64,7 +64,7 @@ std::mt19937_64 Generator(uint64_t seed, int64_t step, int place, uint32_t purpo
   return std::mt19937_64(sequence);
 }
 
-/// The standard's distributions differ between libraries.
+/// Own implementation, as distributions of the standard library differ between implementations.
 double Uniform(std::mt19937_64* random) { return static_cast<double>((*random)() >> 11) * 0x1p-53; }
 int Below(int n, std::mt19937_64* random) { return std::min(n - 1, static_cast<int>(Uniform(random) * n)); }
 
@@ -77,7 +77,7 @@ GuidedSample GuidedSampleOf(uint64_t seed, int64_t step, int place, const PhotoS
   GuidedSample sample;
   sample.person = Below(static_cast<int>(num_frames.size()), &random);
   const int frames = num_frames[sample.person];
-  BODYLOOM_CHECK(frames > 0, "guided plan: person ", sample.person, " has no picture");
+  BODYLOOM_CHECK(frames > 0, "guided plan: person ", sample.person, " has no image");
   sample.source = Below(frames, &random);
   sample.target = PartnerOf(people, sample.person, sample.source, PartnerDiffers::kPoseAndView, Uniform(&random));
   return sample;
@@ -99,7 +99,7 @@ std::vector<uint8_t> KnownPixels(uint64_t seed, int64_t step, int place, int siz
   }
   if (right < 0) return known;
   const int width = right - left + 1, height = bottom - top + 1;
-  const int patches = Below(kMostPatches + 1, &random);
+  const int patches = Below(kMaxPatches + 1, &random);
   for (int p = 0; p < patches; ++p) {
     const auto side = [&](int whole) {
       return std::max(1, static_cast<int>(whole * (kSmallest + (kLargest - kSmallest) * Uniform(&random))));

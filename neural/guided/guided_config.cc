@@ -174,10 +174,10 @@ std::string ToText(const GuidedConfig& config) {
        << "; fill colours " << p.fill_colours << "; from body " << p.start_from_body << "; outline hints "
        << p.contour_hints;
   for (const auto& [name, flag] : Flags()) {
-    // Whether the maps are completed is a matter of inference alone: the networks are the same.
+    // Completion of the maps concerns inference only; the networks are the same.
     if (flag != &GuidedConfig::uv_appearance) text << "; " << name << ' ' << config.*flag;
   }
-  // Older checkpoints saw in the target what is left out of the source.
+  // Networks of older checkpoints saw in the target what was left out of the source.
   if (!config.source_silhouette || !config.source_labels) text << "; the same in the target";
   return text.str();
 }

@@ -41,9 +41,10 @@ GuidedSource GuidedModelImpl::EncodeSource(const GuidedTensors& source) {
 
 Tensor GuidedModelImpl::Silhouette(const GuidedSource& source, const Tensor& pose, const GuidedPseudo& pseudo,
                                    const CodeBox& box) {
-  const Tensor seen = config.profile.contour_hints
-                          ? torch::cat({SourceLabelMap(pseudo.contour_classes), OfSourceSilhouette(pseudo.extent)}, 1)
-                          : Tensor();
+  const Tensor seen =
+      config.profile.contour_hints
+          ? torch::cat({SourceLabelMap(pseudo.contour_classes), OfSourceSilhouette(pseudo.clothes_offset)}, 1)
+          : Tensor();
   return sil(Cropped(source.sil_code, box), pose, seen);
 }
 
@@ -57,12 +58,12 @@ std::pair<Tensor, Tensor> GuidedModelImpl::Render(const Tensor& code, const Tens
                                                   const Tensor& classes, const GuidedPseudo& pseudo,
                                                   const CodeBox& box) {
   const Tensor none = torch::zeros_like(pseudo.silhouette);
-  // Without GarNet no labels are known, not even that of the background.
+  // Without GarNet no labels are known, not even the background's.
   const Tensor labels = config.garments ? LabelMap(classes) : none.expand({-1, config.LabelChannels(), -1, -1});
   std::vector<Tensor> guide = {labels, config.silhouettes ? silhouette : none};
   if (config.PoseForRender()) guide.push_back(pose);
   Tensor seen = torch::cat({pseudo.image, OfSourceSilhouette(pseudo.silhouette)}, 1), shown = pseudo.image;
-  // Colours can be carried on only where it is known which are there, and within a garment where garments are known.
+  // Extending colours requires the known mask, and garments if colours must stay within them.
   if (config.profile.fill_colours && config.source_silhouette) {
     shown = CarryColours(pseudo.image, pseudo.silhouette, pseudo.classes,
                          config.garments && config.source_labels ? classes : Tensor());
@@ -96,7 +97,7 @@ PatchDiscriminator GuidedDiscriminator(const GuidedConfig& config) {
 
 namespace {
 
-constexpr int kLevels = 5;  ///< outwards by some 32 pixels
+constexpr int kLevels = 5;  ///< reaches about 32 pixels outwards
 
 }  // namespace
 

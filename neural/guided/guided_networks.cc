@@ -62,7 +62,7 @@ GarNetImpl::GarNetImpl(const GuidedConfig& config) {
   encoder = register_module("encoder", Encoder(input, widths));
   decoder = register_module("decoder", SkipDecoder(2 * widths.back(), widths, input, kPhotoLabels));
   if (!config.profile.one_hot_labels) return;
-  // A new network repeats the labels that it is given; label 0 stands for those that are not known.
+  // Initialised to return the labels of its input; label 0 stands for unknown ones.
   const torch::NoGradGuard no_grad;
   const int64_t first_label = decoder->head->weight.size(1) - kPhotoLabels;
   for (int64_t k = 1; k < kPhotoLabels; ++k) decoder->head->weight[k][first_label + k][1][1] += 4;
@@ -83,8 +83,8 @@ SilNetImpl::SilNetImpl(const GuidedConfig& config) {
   target_encoder = register_module("target_encoder", Encoder(input, widths));
   decoder = register_module("decoder", SkipDecoder(2 * widths.back(), widths, input, 1));
   if (!from_body) return;
-  // A new network predicts what is likely: 4 inside, −2 outside. That is the body as far as clothes stood off the
-  // source, or else (or where nobody knows) the bare body, a pixel wider and soft.
+  // Initialised to logits of 4 inside and −2 outside of the predicted clothed silhouette, or, without one, of the bare
+  // body widened by a pixel and softened.
   const torch::NoGradGuard no_grad;
   Tensor weight = decoder->head->weight[0];
   const int64_t channels = weight.size(0);
@@ -145,7 +145,7 @@ RenderNetImpl::RenderNetImpl(const GuidedConfig& guided_config) : config(guided_
   const int out = config.silhouettes || config.garments ? 3 : 4;
   last = register_module("last", MakeConv(p.full_width + pseudo, out, 3, 1, 1, true));
   nn::init::normal_(last->weight, 0, 0.02);
-  // A new network shows what is known: sigmoid(4 (x − ½)) is near x.
+  // Initialised to return the known colours: sigmoid(4 (x − ½)) is near x.
   const torch::NoGradGuard no_grad;
   for (int64_t c = 0; c < 3; ++c) last->weight[c][p.full_width + c][1][1] += 4;
   last->bias.slice(0, 0, 3).fill_(-2);
@@ -156,7 +156,7 @@ RenderCode RenderNetImpl::EncodeSource(const Tensor& triplet) {
   const Tensor deepest = source_encoder(triplet).back();
   if (config.kl) {
     const std::vector<Tensor> parts = code_head(deepest).chunk(2, 1);
-    // Beyond e^±10 nothing changes but the danger of overflow.
+    // Clamped against overflow; values beyond e^±10 make no difference.
     return {parts[0], parts[1].clamp(-20, 20)};
   }
   const Tensor code = flat2(torch::relu(flat1(deepest.mean({2, 3}))));

@@ -24,19 +24,19 @@ class GuidedRenderer::Impl {
     BODYLOOM_CHECK(photos[0].size == size, "pose-guided renderer: a photo of ", photos[0].size, " px, expected ", size);
     const torch::NoGradGuard no_grad;
     const GuidedTensors tensors = TensorsOf(photos.first(1));
-    BODYLOOM_CHECK(tensors.image.defined(), "pose-guided renderer: the source has no picture");
+    BODYLOOM_CHECK(tensors.image.defined(), "pose-guided renderer: the source has no image");
     codes_ = model_->EncodeSource(tensors);
     last_ = {};
     SourceBody known = body;
     known.garments_known = config_.source_labels;
     source_ = MapsOfSource(photos, known, completion(), config_.profile.contour_hints,
-                           [&](const PhotoFrame& frame, const PseudoPicture& pseudo) { return Draw(frame, pseudo); });
+                           [&](const PhotoFrame& frame, const PseudoImage& pseudo) { return Draw(frame, pseudo); });
     BODYLOOM_CHECK(source_.texels_seen > 0, "pose-guided renderer: the photos show nothing of the body");
   }
 
   [[nodiscard]] MapCompletion completion() const { return options_.completion.value_or(config_.Completion()); }
 
-  PersonPicture Render(const PhotoFrame& frame) {
+  RenderedPerson Render(const PhotoFrame& frame) {
     BODYLOOM_CHECK(source_.maps.size > 0, "pose-guided renderer: no source yet");
     ++frames_;
     if (last_.size > 0 && frame.uv == last_uv_ && frame.parts == last_parts_) {
@@ -51,22 +51,22 @@ class GuidedRenderer::Impl {
 
   SourceMaps source_;
   int64_t frames_ = 0, frames_kept_ = 0;
-  double computed_ = 0;  ///< windows
+  double computed_ = 0;  ///< sum over frames, in windows
 
  private:
-  PersonPicture Draw(const PhotoFrame& frame, const PseudoPicture& pseudo) {
+  RenderedPerson Draw(const PhotoFrame& frame, const PseudoImage& pseudo) {
     double share = 0;
-    PersonPicture picture = DrawGuided(&model_, codes_, frame, pseudo, options_.reach, &share);
+    RenderedPerson rendered = DrawGuided(&model_, codes_, frame, pseudo, options_.reach, &share);
     computed_ += share;
     ++drawn_;
-    return picture;
+    return rendered;
   }
 
   GuidedConfig config_;
   GuidedRendererOptions options_;
   GuidedModel model_{nullptr};
   GuidedSource codes_;
-  PersonPicture last_;
+  RenderedPerson last_;
   std::vector<float> last_uv_;
   std::vector<uint8_t> last_parts_;
 
@@ -82,10 +82,10 @@ GuidedRenderer::~GuidedRenderer() = default;
 void GuidedRenderer::SetSource(std::span<const PhotoFrame> photos, const SourceBody& body) {
   impl_->SetSource(photos, body);
 }
-PersonPicture GuidedRenderer::Render(const PhotoFrame& frame) { return impl_->Render(frame); }
+RenderedPerson GuidedRenderer::Render(const PhotoFrame& frame) { return impl_->Render(frame); }
 MapCompletion GuidedRenderer::completion() const { return impl_->completion(); }
 const CoherentMaps& GuidedRenderer::maps() const { return impl_->source_.maps; }
-const std::vector<PersonPicture>& GuidedRenderer::virtual_pictures() const { return impl_->source_.virtual_pictures; }
+const std::vector<RenderedPerson>& GuidedRenderer::virtual_images() const { return impl_->source_.virtual_images; }
 int64_t GuidedRenderer::frames_kept() const { return impl_->frames_kept_; }
 double GuidedRenderer::computed_share() const {
   return impl_->drawn_ > 0 ? impl_->computed_ / static_cast<double>(impl_->drawn_) : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A trained pose-guided renderer at work: one photo in (or several), pictures in any pose out.
+/// Inference with a trained pose-guided renderer: from one or several photos to images in any pose.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 namespace bodyloom {
 
 struct GuidedRendererOptions {
-  int reach = 0;  ///< pixels from the body beyond which is background; 0: none, the whole window is computed
-  std::optional<MapCompletion> completion;  ///< absent: the configuration's
+  int reach = 0;  ///< pixels farther from the body are background; 0: no limit, the whole window is computed
+  std::optional<MapCompletion> completion;  ///< default: the configuration's
   int num_threads = 0;                      ///< 0: all cores
   std::string device = "cpu";               ///< or "cuda"
 };
@@ -32,20 +32,21 @@ class GuidedRenderer {
   GuidedRenderer(const GuidedRenderer&) = delete;
   GuidedRenderer& operator=(const GuidedRenderer&) = delete;
 
-  /// `photos`: one or more pictures of the person, the first one the source whose triplet the networks see; the others
-  /// fill texels that earlier ones left empty or see less from the front. Throws std::invalid_argument as MapsOfSource
-  /// (source_maps.h), for frames of other sizes or without pictures, and for photos that show nothing of the body.
+  /// Sets the source. `photos`: one or more images of the person; the triplet of the first is the networks' source, the
+  /// others fill texels that earlier ones left empty or see less frontally. Throws std::invalid_argument as
+  /// MapsOfSource (source_maps.h), for frames of other sizes or without images, and for photos that show nothing of the
+  /// body.
   void SetSource(std::span<const PhotoFrame> photos, const SourceBody& body);
 
-  /// The person in another pose; after SetSource.
-  PersonPicture Render(const PhotoFrame& frame);
+  /// Renders the person in another pose; call SetSource first.
+  RenderedPerson Render(const PhotoFrame& frame);
 
   [[nodiscard]] const CoherentMaps& maps() const;
-  /// Which way the maps are completed.
+  /// The way in which the maps are completed.
   [[nodiscard]] MapCompletion completion() const;
-  /// The virtual views as the networks drew them; empty where none were.
-  [[nodiscard]] const std::vector<PersonPicture>& virtual_pictures() const;
-  /// Frames that were those before: they were not computed again.
+  /// The virtual views rendered by the networks; empty if none were.
+  [[nodiscard]] const std::vector<RenderedPerson>& virtual_images() const;
+  /// Number of frames identical to the previous one, which were not computed again.
   [[nodiscard]] int64_t frames_kept() const;
   /// Share of the window's pixels that the networks computed, mean over frames.
   [[nodiscard]] double computed_share() const;

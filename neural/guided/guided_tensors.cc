@@ -22,7 +22,7 @@ Tensor Filled(const std::vector<T>& values, const char* name, int64_t channels, 
   return OnDevice(tensor.to(torch::kFloat));
 }
 
-/// What the frame shows of the body, grown by `reach` pixels, and of its labels; empty where there is neither.
+/// Box of the frame's body, grown by `reach` pixels, and of its labels; empty if there is neither.
 PixelBox AroundPerson(const PhotoFrame& frame, int reach) {
   PixelBox around = {1 << 30, 1 << 30, 0, 0};
   for (int y = 0; y < frame.size; ++y) {
@@ -42,7 +42,7 @@ CodeBox CellsOf(const PixelBox& box, int multiple) {
   return {box.x_begin / multiple, box.y_begin / multiple, box.width() / multiple, box.height() / multiple};
 }
 
-/// Of B maps each its own box of `scale` values a cell; undefined maps stay undefined.
+/// Crops each of B maps to its own box with `scale` values per cell; undefined maps stay undefined.
 Tensor CropEach(const Tensor& map, std::span<const CodeBox> boxes, int scale) {
   if (!map.defined()) return map;
   std::vector<Tensor> cropped;
@@ -82,20 +82,20 @@ GuidedTensors TensorsOf(std::span<const PhotoFrame> frames) {
   return tensors;
 }
 
-GuidedPseudo PseudoOf(std::span<const PseudoPicture> pictures) {
-  std::vector<Tensor> classes, images, silhouettes, extents;
-  for (const PseudoPicture& picture : pictures) {
-    classes.push_back(Filled(picture.labels, "pseudo labels", 1, picture.size, torch::kByte));
-    images.push_back(Filled(picture.image, "the pseudo image", 3, picture.size, torch::kFloat));
-    silhouettes.push_back(Filled(picture.known, "the pseudo silhouette", 1, picture.size, torch::kByte));
+GuidedPseudo PseudoOf(std::span<const PseudoImage> pseudo) {
+  std::vector<Tensor> classes, images, silhouettes, clothes_offsets;
+  for (const PseudoImage& one : pseudo) {
+    classes.push_back(Filled(one.labels, "pseudo labels", 1, one.size, torch::kByte));
+    images.push_back(Filled(one.image, "the pseudo image", 3, one.size, torch::kFloat));
+    silhouettes.push_back(Filled(one.known, "the pseudo silhouette", 1, one.size, torch::kByte));
     const auto field = [&](const std::vector<float>& values, const char* name) {
-      return values.empty() ? torch::zeros_like(silhouettes.back())
-                            : Filled(values, name, 1, picture.size, torch::kFloat);
+      return values.empty() ? torch::zeros_like(silhouettes.back()) : Filled(values, name, 1, one.size, torch::kFloat);
     };
-    extents.push_back(torch::cat({field(picture.extent, "the extent"), field(picture.clothed, "the clothed body")}, 1));
+    clothes_offsets.push_back(
+        torch::cat({field(one.clothes_offset, "the offset of clothes"), field(one.clothed, "the clothed body")}, 1));
   }
   const Tensor labels = torch::cat(classes, 0);
-  return {labels, torch::cat(images, 0), torch::cat(silhouettes, 0), labels, torch::cat(extents, 0)};
+  return {labels, torch::cat(images, 0), torch::cat(silhouettes, 0), labels, torch::cat(clothes_offsets, 0)};
 }
 
 GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<uint8_t>> known) {
@@ -110,8 +110,8 @@ GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<ui
 CodeBox PersonBox(const PhotoFrame& frame, int multiple, int reach) {
   const PixelBox around = AroundPerson(frame, reach);
   if (around.empty()) return {};
-  const int least = LeastBoxSide(multiple);
-  return CellsOf(AlignedBox(around, {0, 0, frame.size, frame.size}, multiple, least, least), multiple);
+  const int minimum = MinBoxSide(multiple);
+  return CellsOf(AlignedBox(around, {0, 0, frame.size, frame.size}, multiple, minimum, minimum), multiple);
 }
 
 std::vector<CodeBox> PersonBoxes(std::span<const PhotoFrame> frames, int multiple, int reach) {
@@ -137,7 +137,7 @@ GuidedTensors CroppedPixels(const GuidedTensors& tensors, const CodeBox& box, in
 GuidedPseudo CroppedPixels(const GuidedPseudo& pseudo, const CodeBox& box, int multiple) {
   return {CroppedPixels(pseudo.classes, box, multiple), CroppedPixels(pseudo.image, box, multiple),
           CroppedPixels(pseudo.silhouette, box, multiple), CroppedPixels(pseudo.contour_classes, box, multiple),
-          CroppedPixels(pseudo.extent, box, multiple)};
+          CroppedPixels(pseudo.clothes_offset, box, multiple)};
 }
 
 GuidedTensors CroppedEach(const GuidedTensors& tensors, std::span<const CodeBox> boxes, int multiple) {
@@ -148,7 +148,7 @@ GuidedTensors CroppedEach(const GuidedTensors& tensors, std::span<const CodeBox>
 GuidedPseudo CroppedEach(const GuidedPseudo& pseudo, std::span<const CodeBox> boxes, int multiple) {
   return {CropEach(pseudo.classes, boxes, multiple), CropEach(pseudo.image, boxes, multiple),
           CropEach(pseudo.silhouette, boxes, multiple), CropEach(pseudo.contour_classes, boxes, multiple),
-          CropEach(pseudo.extent, boxes, multiple)};
+          CropEach(pseudo.clothes_offset, boxes, multiple)};
 }
 
 GuidedSource CroppedEach(const GuidedSource& source, std::span<const CodeBox> boxes) {
@@ -157,12 +157,13 @@ GuidedSource CroppedEach(const GuidedSource& source, std::span<const CodeBox> bo
           {CropEach(source.render_code.mean, boxes, 1), CropEach(source.render_code.log_variance, boxes, 1)}};
 }
 
-PersonPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
-                        int multiple, int size) {
+RenderedPerson RenderedPersonOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
+                                int multiple, int size) {
   const size_t pixels = size_t(size) * size;
-  PersonPicture picture{size, std::vector<float>(3 * pixels), std::vector<float>(pixels), std::vector<uint8_t>(pixels)};
+  RenderedPerson rendered{size, std::vector<float>(3 * pixels), std::vector<float>(pixels),
+                          std::vector<uint8_t>(pixels)};
   const std::vector<float> image = HostValues<float>(result.image[b]), alpha = HostValues<float>(result.silhouette[b]);
-  // Where the silhouette has the person GarNet's likeliest garment counts, whatever it thinks of the background.
+  // Inside the silhouette GarNet's most likely garment is taken, ignoring its background class.
   const std::vector<float> labels = HostValues<float>(
       result.label_logits.defined() ? result.label_logits[b].slice(0, 1).argmax(0).to(torch::kFloat) + 1
                                     : pseudo.classes[b]);
@@ -171,13 +172,13 @@ PersonPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, 
     for (int64_t x = 0; x < width; ++x) {
       const int64_t j = y * width + x;
       const size_t i = size_t(box.y * multiple + y) * size + (box.x * multiple + x);
-      for (int64_t c = 0; c < 3; ++c) picture.image[c * pixels + i] = image[c * area + j];
-      picture.alpha[i] = alpha[j];
-      if (picture.alpha[i] < 0.5F) continue;
-      picture.labels[i] = std::max<uint8_t>(1, static_cast<uint8_t>(labels[j]));
+      for (int64_t c = 0; c < 3; ++c) rendered.image[c * pixels + i] = image[c * area + j];
+      rendered.alpha[i] = alpha[j];
+      if (rendered.alpha[i] < 0.5F) continue;
+      rendered.labels[i] = std::max<uint8_t>(1, static_cast<uint8_t>(labels[j]));
     }
   }
-  return picture;
+  return rendered;
 }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Frames of the pose-guided renderer as tensors, and back. Internal: includes LibTorch.
+/// Converts frames of the pose-guided renderer to tensors, and results back. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -14,36 +14,36 @@
 
 namespace bodyloom {
 
-/// Of frames of one size. Silhouette, classes and image are undefined when one of the frames has no picture. Throws
-/// std::invalid_argument for arrays of other sizes than they should have and for labels above 6.
+/// Converts frames of one size. Silhouette, classes and image are undefined when one of the frames has no image. Throws
+/// std::invalid_argument for arrays of unexpected sizes and for labels above 6.
 GuidedTensors TensorsOf(std::span<const PhotoFrame> frames);
 
-/// Pseudo inputs: those of pictures of one size; or of the truth where `known` (B arrays of S × S) says so.
-GuidedPseudo PseudoOf(std::span<const PseudoPicture> pictures);
+/// Pseudo inputs from images of one size, or from the truth at the pixels where `known` (B arrays of S × S) is set.
+GuidedPseudo PseudoOf(std::span<const PseudoImage> images);
 GuidedPseudo PseudoOf(const GuidedTensors& truth, std::span<const std::vector<uint8_t>> known);
 
-/// The cells (of `multiple` pixels) of the window where the person may be: around what the frame shows of the body,
-/// grown by `reach` pixels, and of its labels; at least 32 pixels and two cells a side (or the whole window). Width 0
-/// where there is neither.
+/// The cells (of `multiple` pixels) of the window where the person may be: the box of the frame's body, grown by
+/// `reach` pixels, and of its labels; at least 32 pixels and two cells a side (or the whole window). Width 0 if there
+/// is neither.
 CodeBox PersonBox(const PhotoFrame& frame, int multiple, int reach);
-/// The same of each frame, all of one size: instance norms see what they will see at work, one person and little else.
-/// Around nobody the window's middle.
+/// The same for each frame, all of one size: instance norms see one person and little else, as in inference. Frames
+/// without a person get the window's centre.
 std::vector<CodeBox> PersonBoxes(std::span<const PhotoFrame> frames, int multiple, int reach);
 
-/// The box's pixels of a map of the window; undefined maps stay undefined.
+/// Crops a map of the window to the box's pixels; undefined maps stay undefined.
 torch::Tensor CroppedPixels(const torch::Tensor& map, const CodeBox& box, int multiple);
 GuidedTensors CroppedPixels(const GuidedTensors& tensors, const CodeBox& box, int multiple);
 GuidedPseudo CroppedPixels(const GuidedPseudo& pseudo, const CodeBox& box, int multiple);
 
-/// Each of B pictures its own box, all of one size.
+/// Crops each of B images to its own box, all of one size.
 GuidedTensors CroppedEach(const GuidedTensors& tensors, std::span<const CodeBox> boxes, int multiple);
 GuidedPseudo CroppedEach(const GuidedPseudo& pseudo, std::span<const CodeBox> boxes, int multiple);
-/// The source's codes where the boxes are.
+/// Crops the source's codes to the boxes.
 GuidedSource CroppedEach(const GuidedSource& source, std::span<const CodeBox> boxes);
 
-/// The picture of frame b, laid into a window of `size` pixels. Labels are those of `result` where alpha is at least ½
-/// (1 where GarNet predicts background or there is none), of `pseudo` where there is no GarNet and it knows them.
-PersonPicture PictureOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
-                        int multiple, int size);
+/// Pastes the image of frame b into a window of `size` pixels. Labels are those of `result` where alpha is at least ½;
+/// without GarNet those of `pseudo` if known, else 1.
+RenderedPerson RenderedPersonOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
+                                int multiple, int size);
 
 }  // namespace bodyloom

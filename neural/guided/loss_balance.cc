@@ -8,7 +8,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kLeast = 1e-3, kMost = 1e2;
+constexpr double kMinimum = 1e-3, kMaximum = 1e2;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void LossBalance::Measure(double reference, std::span<const double> losses) {
   if (!IsSet()) return;
   for (int i = 0; i < num_losses_; ++i) {
     const double sum = state[2 + i];
-    state[2 + num_losses_ + i] = sum > 0 ? std::clamp(state[1] / sum, kLeast, kMost) : 0;
+    state[2 + num_losses_ + i] = sum > 0 ? std::clamp(state[1] / sum, kMinimum, kMaximum) : 0;
   }
 }
 

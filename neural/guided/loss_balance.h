@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Weights that bring losses to the scale of a reference loss, found once and then kept.
+/// Weights that bring losses to the scale of a reference loss, determined once and then constant.
 ///
-/// During the first `warmup` steps the losses are measured; then λ_i = mean(reference)/mean(loss_i), no less than 1e-3
-/// and no more than 1e2, for the rest of the run (0 for a loss that was 0 throughout). Yoon et al., CVPR 2021, choose
-/// theirs "empirically … that all the losses have comparable scale" and do not name them. Internal: includes LibTorch.
+/// During the first `warmup` steps the losses are measured; then λ_i = mean(reference)/mean(loss_i), clamped to [1e-3,
+/// 1e2], for the rest of the run (0 for a loss that was 0 throughout). Yoon et al., CVPR 2021, choose theirs
+/// "empirically … that all the losses have comparable scale" without stating them. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -17,13 +17,13 @@ class LossBalance {
  public:
   LossBalance(int num_losses, int warmup);
 
-  /// Counts a step of the warm-up; does nothing after it.
+  /// Adds a step of the warm-up; does nothing after it.
   void Measure(double reference, std::span<const double> losses);
   [[nodiscard]] bool IsSet() const;
   /// 0 until the weights are set.
   [[nodiscard]] double Weight(int loss) const;
 
-  /// All there is to keep of it in a checkpoint: steps measured, sums (the reference's first), weights; doubles.
+  /// State for a checkpoint, as doubles: steps measured, sums (the reference's first), weights.
   [[nodiscard]] torch::Tensor* state() { return &state_; }
 
  private:

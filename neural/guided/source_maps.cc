@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "geometry/base/check.h"
-#include "render/garment/clothes_extent.h"
+#include "render/garment/clothes_offset_map.h"
 #include "render/texture/complete/guess_unseen.h"
 
 namespace bodyloom {
 namespace {
 
-/// The photo with its texels where `lent` is as told, without the others.
+/// The photo restricted to texels where `lent` equals where_lent.
 PhotoFrame ShownAlone(const PhotoFrame& photo, std::span<const uint8_t> lent, bool where_lent) {
   PhotoFrame shown = photo;
   for (size_t i = 0; i < lent.size(); ++i) {
@@ -20,15 +20,15 @@ PhotoFrame ShownAlone(const PhotoFrame& photo, std::span<const uint8_t> lent, bo
   return shown;
 }
 
-/// The photo, of whose labels only person and background are left.
+/// The photo with labels reduced to person and background.
 PhotoFrame WithoutGarments(const PhotoFrame& photo) {
   PhotoFrame shown = photo;
   for (uint8_t& label : shown.labels) label = label != 0 ? 1 : 0;
   return shown;
 }
 
-/// Puts a photo's texels into the maps that it sees at a larger cosine than those before it. Returns how many were
-/// empty.
+/// Copies a photo's texels to the maps where it sees them at a larger cosine than the photos before. Returns the number
+/// of previously empty ones.
 int TakeBetterSeen(const CoherentMaps& of_photo, std::span<const float> cosine, std::vector<float>* seen_at,
                    CoherentMaps* maps) {
   const size_t texels = maps->from.size();
@@ -47,12 +47,12 @@ int TakeBetterSeen(const CoherentMaps& of_photo, std::span<const float> cosine, 
 }  // namespace
 
 SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& body, MapCompletion completion,
-                        bool extent, const DrawPose& draw) {
+                        bool clothes_offset, const DrawPose& draw) {
   BODYLOOM_CHECK(!photos.empty(), "pose-guided renderer: no photo");
   const bool views = body.virtual_views.size() == kNumVirtualViews;
   BODYLOOM_CHECK(completion != MapCompletion::kVirtualViews || views, "virtual views: ", body.virtual_views.size(),
                  ", expected ", int(kNumVirtualViews));
-  BODYLOOM_CHECK((completion != MapCompletion::kNearest && !extent) || body.neighbours != nullptr,
+  BODYLOOM_CHECK((completion != MapCompletion::kNearest && !clothes_offset) || body.neighbours != nullptr,
                  "pose-guided renderer: the maps ask for the nearest texels, and nobody says which are near");
   std::vector<uint8_t> behind;  // of the head
   if (views && completion != MapCompletion::kNearest) {
@@ -72,29 +72,29 @@ SourceMaps MapsOfSource(std::span<const PhotoFrame> photos, const SourceBody& bo
     if (!body.garments_known) part = WithoutGarments(part ? *part : photos[i]);
     const PhotoFrame& shown = part ? *part : photos[i];
     CoherentMaps of_photo = EmptyMaps(source.maps.size, body.texel_parts);
-    FillEmptyTexels(shown, OwnPicture(shown), static_cast<uint8_t>(i + 1), {}, &of_photo);
+    FillEmptyTexels(shown, OwnImage(shown), static_cast<uint8_t>(i + 1), {}, &of_photo);
     source.texels_seen += TakeBetterSeen(of_photo, shown.texel_cosine, &seen_at, &source.maps);
   }
-  if (!behind.empty()) CallFacesBehindHair(behind, source.maps.labels);
-  if (extent) {
-    source.maps.extent = ClothesExtent(photos[0], *body.neighbours);
+  if (!behind.empty()) RelabelBackOfHeadAsHair(behind, source.maps.labels);
+  if (clothes_offset) {
+    source.maps.clothes_offset = ClothesOffsetMap(photos[0], *body.neighbours);
     if (!lent.empty()) {
-      const std::vector<float> of_lender = ClothesExtent(photos.back(), *body.neighbours);
+      const std::vector<float> of_lender = ClothesOffsetMap(photos.back(), *body.neighbours);
       for (size_t i = 0; i < lent.size(); ++i) {
-        if (lent[i] != 0) source.maps.extent[i] = of_lender[i];
+        if (lent[i] != 0) source.maps.clothes_offset[i] = of_lender[i];
       }
     }
   }
   const int next = static_cast<int>(photos.size()) + 1;
   if (completion == MapCompletion::kNearest) {
-    GuessRest(*body.neighbours, static_cast<uint8_t>(next), &source.maps);
+    CompleteEmptyTexels(*body.neighbours, static_cast<uint8_t>(next), &source.maps);
   } else if (completion == MapCompletion::kVirtualViews) {
-    source.virtual_pictures = CompleteMaps(body.virtual_views, draw, next, &source.maps);
+    source.virtual_images = CompleteMaps(body.virtual_views, draw, next, &source.maps);
   }
   return source;
 }
 
-int GuessRest(const TexelNeighbours& neighbours, uint8_t from, CoherentMaps* maps) {
+int CompleteEmptyTexels(const TexelNeighbours& neighbours, uint8_t from, CoherentMaps* maps) {
   BODYLOOM_CHECK(from > 0 && neighbours.texture_size() == maps->size, "coherent maps: neighbours of ",
                  neighbours.texture_size(), " texels a side for maps of ", maps->size);
   const std::vector<uint8_t> guessed = GuessUnseen(neighbours, maps->labels, maps->appearance);

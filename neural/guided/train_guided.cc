@@ -53,7 +53,7 @@ class GuidedTrainer : public RendererTrainer {
                               config_.profile.perceptual_divisor);
     checkpoint_.Add("model", model_.ptr().get());
     AddJudge(discriminator_.ptr());
-    // One optimizer is three: Adam treats every weight by itself, and no loss reaches two networks.
+    // One optimizer is equivalent to three: Adam treats weights independently, and no loss depends on two networks.
     optimizer_ = AddOptimizer("optimizer", *model_, options.learning_rate);
     discriminator_optimizer_ = AddOptimizer("discriminator_optimizer", *discriminator_, options.discriminator_rate);
     checkpoint_.Add("loss_weights", balance_.state());
@@ -92,12 +92,12 @@ class GuidedTrainer : public RendererTrainer {
       people.fill(person, photos_[person], &photo);
       const torch::NoGradGuard no_grad;
       const GuidedSource source = model_->EncodeSource(TensorsOf(std::span(&photo, 1)));
-      const auto draw = [&](const PhotoFrame& frame, const PseudoPicture& pseudo) {
+      const auto draw = [&](const PhotoFrame& frame, const PseudoImage& pseudo) {
         return DrawGuided(&model_, source, frame, pseudo, options_.reach, nullptr);
       };
       MapCompletion completion = config_.Completion();
       std::vector<PhotoFrame> views;
-      // Six drawings of the body, for nothing where the nearest texels do.
+      // The six views of the body are not needed for completion by nearest texels.
       if (options_.validation_views && completion != MapCompletion::kNearest) views = options_.validation_views(person);
       if (completion == MapCompletion::kVirtualViews && views.empty()) completion = MapCompletion::kNone;
       const SourceBody body = {
@@ -106,7 +106,7 @@ class GuidedTrainer : public RendererTrainer {
           MapsOfSource(std::span(&photo, 1), body, completion, config_.profile.contour_hints, draw).maps;
       const int frames = std::min(people.num_frames[person] - 1, options_.validation_frames);
       for (int k = 0; k < frames; ++k) {
-        // Spread over the person's pictures but the photo.
+        // Spread over the person's images except the photo.
         const int frame =
             (photos_[person] + 1 + k * (people.num_frames[person] - 1) / frames) % people.num_frames[person];
         GuidedPreview preview;
@@ -114,8 +114,8 @@ class GuidedTrainer : public RendererTrainer {
         preview.frame = frame;
         people.fill(person, frame, &preview.truth);
         preview.pseudo = LookUp(maps, preview.truth);
-        preview.picture = draw(preview.truth, preview.pseudo);
-        scorer.Add(preview.picture, preview.truth);
+        preview.rendered = draw(preview.truth, preview.pseudo);
+        scorer.Add(preview.rendered, preview.truth);
         if (!options_.preview || k != 0) continue;
         preview.source = photo;
         previews.push_back(std::move(preview));
@@ -146,7 +146,7 @@ class GuidedTrainer : public RendererTrainer {
                       config_.kl && config_.latent ? options_.kl_share : 0.0}[loss];
   }
 
-  /// Silhouette and labels that RenderNet is given: true ones, or what the other two networks make of true inputs.
+  /// Silhouette and labels for RenderNet: true ones, or those predicted by the other two networks from true inputs.
   std::pair<Tensor, Tensor> RenderInputs(const GuidedBatch& batch, const GuidedSource& source,
                                          const Tensor& silhouette_logits, int step) {
     Tensor silhouette = batch.target.silhouette, classes = batch.target.classes;
@@ -206,7 +206,7 @@ class GuidedTrainer : public RendererTrainer {
     return torch::cat({model_->LabelMap(truth.classes), image}, 1);
   }
 
-  /// λ-weighted sum; while the weights are not set the losses are only measured.
+  /// λ-weighted sum; until the weights are set the losses are only measured.
   Tensor BalancedLosses(const GuidedBatch& batch, const Tensor& image, const RenderCode& code, int step) {
     const torch::AutoGradMode mode(balance_.IsSet());
     Tensor sum = torch::zeros({}, image.options().requires_grad(false));
@@ -216,12 +216,12 @@ class GuidedTrainer : public RendererTrainer {
     };
     if (Share(kPerceptual) > 0 || Share(kContextual) > 0) {
       const SeenPair seen = See(image, batch.target.image);
-      if (Share(kPerceptual) > 0) add(kPerceptual, PerceptualLoss(seen.picture, seen.truth));
+      if (Share(kPerceptual) > 0) add(kPerceptual, PerceptualLoss(seen.image, seen.truth));
       if (Share(kContextual) > 0) {
         ContextualOptions contextual;
         contextual.max_points = config_.profile.contextual_points;
         contextual.seed = static_cast<uint64_t>(step);
-        add(kContextual, ContextualLoss(seen.picture[2], seen.truth[2], contextual));
+        add(kContextual, ContextualLoss(seen.image[2], seen.truth[2], contextual));
       }
     }
     if (Share(kGan) > 0) {
@@ -239,13 +239,13 @@ class GuidedTrainer : public RendererTrainer {
   const TrainGuidedOptions& options_;
   const GuidedConfig& config_;
   LossBalance balance_;
-  std::optional<TexelNeighbours> neighbours_;  ///< where the maps are completed by them
+  std::optional<TexelNeighbours> neighbours_;  ///< set if the maps are completed by them
   GuidedModel model_{nullptr};
   PatchDiscriminator discriminator_{nullptr};
   Adam *optimizer_ = nullptr, *discriminator_optimizer_ = nullptr;
   PersonScores scores_;
   std::vector<int> photos_;                           ///< of the people validated on
-  std::unique_ptr<Prefetcher<GuidedBatch>> batches_;  ///< last: its thread uses the rest
+  std::unique_ptr<Prefetcher<GuidedBatch>> batches_;  ///< last member: its thread uses the others
 };
 
 }  // namespace
@@ -265,7 +265,7 @@ TrainGuidedSummary TrainGuided(const PhotoSource& people, const TrainGuidedOptio
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "pose-guided training: ", why);
   BODYLOOM_CHECK(!people.num_frames.empty() && people.fill, "pose-guided training: nobody to train on");
-  BODYLOOM_CHECK(people.size == options.config.profile.image_size, "pose-guided training: pictures of ", people.size,
+  BODYLOOM_CHECK(people.size == options.config.profile.image_size, "pose-guided training: images of ", people.size,
                  " px, expected ", options.config.profile.image_size);
   return GuidedTrainer(people, options).Run();
 }

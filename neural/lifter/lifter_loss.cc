@@ -12,13 +12,13 @@ using torch::Tensor;
 using Slice = torch::indexing::Slice;
 
 constexpr double kLogSigmaLow = -5, kLogSigmaHigh = 1;
-constexpr double kTiny = 1e-6;  ///< under roots: their derivative at zero stays finite
+constexpr double kTiny = 1e-6;  ///< under square roots, for a finite derivative at zero
 
 Tensor Indices(std::span<const int> values) {
   return torch::tensor(std::vector<int64_t>(values.begin(), values.end()), torch::kLong);
 }
 
-/// Of B×T×…×5 predictions against B×T×…×3 truths (broadcast): negative log likelihood without its constant, and
+/// Errors of B×T×…×5 predictions against B×T×…×3 truths (broadcast): negative log likelihood without its constant, and
 /// distance, B×T×….
 struct PointErrors {
   Tensor nll, distance;
@@ -77,7 +77,7 @@ Tensor OneHot(const Tensor& index) { return torch::one_hot(index, LifterOutput::
 LifterLoss ComputeLifterLoss(const Tensor& output, const LifterTargets& targets, const LifterLossOptions& options) {
   const Tensor y = output.transpose(1, 2);  // B×T×outputs
   LifterLoss loss;
-  // Torso: the face half, shoulders and hips full.
+  // Torso: face with half weight, shoulders and hips with full weight.
   const PointErrors torso = Errors(TakeTorso(y), targets.points.index_select(2, Indices(LifterOutput::kTorso)));
   const Tensor torso_weight = torch::tensor({0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 1.F, 1.F, 1.F, 1.F});
   Tensor distance = (torso.distance * torso_weight).sum(-1), nll = (torso.nll * torso_weight).sum(-1);

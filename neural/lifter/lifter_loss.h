@@ -5,7 +5,7 @@
 /// exp(−r) / (8π σ_xy² σ_z), a Laplace density in three dimensions, so
 ///   nll = r + 2 log σ_xy + log σ_z (+ log 8π).
 /// A limb's landmarks share hypotheses m of weight π_m: nll = −log Σ_m π_m exp(−Σ_i nll_mi); q_m are their posterior
-/// weights, held fixed where they weigh distances.
+/// weights, constant where they weight distances.
 ///   loss = Σ_i w_i |d_i| (limbs: Σ_m q_m |d_mi|) + nll_weight · mean nll + velocity_weight · mean |Δp − Δp̂|
 ///        + 0.1 (up: |u − û|/σ + log σ) + 0.05 (contact: binary cross entropy)
 /// with w = 1.5 for limbs, 0.5 for the face, 1 for shoulders and hips, normalised to mean 1.
@@ -35,9 +35,9 @@ struct LifterLoss {
 LifterLoss ComputeLifterLoss(const torch::Tensor& output, const LifterTargets& targets,
                              const LifterLossOptions& options);
 
-/// B×T×21×3: torso landmarks and, of each limb, the hypothesis with the largest weight.
+/// B×T×21×3: torso landmarks and, for each limb, the hypothesis of maximum weight.
 torch::Tensor LikeliestPoints(const torch::Tensor& output);
-/// The same with each limb's hypothesis nearest to the truth: what choosing perfectly would give.
+/// The same with each limb's hypothesis nearest to the truth: the result of a perfect choice.
 torch::Tensor NearestPoints(const torch::Tensor& output, const torch::Tensor& truth);
 
 }  // namespace bodyloom

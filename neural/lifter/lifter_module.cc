@@ -16,10 +16,10 @@ nn::Conv1d Convolution(int from, int to, int kernel, int dilation) {
       nn::Conv1dOptions(from, to, kernel).dilation(dilation).padding(kernel == 1 ? 0 : dilation).bias(true));
 }
 
-/// Over the channels of each frame: B×C×T.
+/// Layer norm over the channels of each frame: B×C×T.
 torch::Tensor PerFrame(nn::LayerNorm& norm, const torch::Tensor& x) { return norm(x.transpose(1, 2)).transpose(1, 2); }
 
-/// out×in×k → out × (k·in), columns tap by tap.
+/// out×in×k → out × (k·in), columns ordered by tap.
 RowMatrixXf TapsByColumn(const torch::Tensor& weight) {
   const torch::Tensor taps = weight.detach().permute({0, 2, 1}).contiguous().to(torch::kFloat);
   return Eigen::Map<const RowMatrixXf>(taps.data_ptr<float>(), taps.size(0), taps.size(1) * taps.size(2));
@@ -50,7 +50,7 @@ void SetNorm(const Eigen::VectorXf& scale, const Eigen::VectorXf& shift, nn::Lay
   (*norm)->bias.copy_(torch::from_blob(const_cast<float*>(shift.data()), {shift.size()}));
 }
 
-/// Hypotheses that start alike stay alike: their depths start apart, and every σ starts at a tenth.
+/// Breaks the symmetry between hypotheses: their initial depths differ, and every initial σ is 0.1.
 void SpreadHypotheses(nn::Conv1d* output) {
   const torch::NoGradGuard no_grad;
   (*output)->weight.mul_(0.1);

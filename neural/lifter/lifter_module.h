@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The lifter (geometry/scene/lifter_weights.h) as a LibTorch module, and its weights as plain arrays.
-/// Internal: included by neural's own sources only, because it includes LibTorch.
+/// The lifter (geometry/scene/lifter_weights.h) as a LibTorch module, and conversion of its weights to plain arrays.
+/// Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -24,9 +24,9 @@ struct LifterModuleImpl : torch::nn::Module {
 };
 TORCH_MODULE(LifterModule);
 
-/// The module's numbers as plain arrays.
+/// Converts the module's weights to plain arrays.
 LifterWeights ExportLifter(const LifterModule& module);
-/// The other way; throws std::invalid_argument when the sizes differ.
+/// Copies weights into the module; throws std::invalid_argument when the sizes differ.
 void ImportLifter(const LifterWeights& weights, LifterModule* module);
 
 }  // namespace bodyloom

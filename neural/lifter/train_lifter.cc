@@ -55,7 +55,7 @@ double LearningRate(const TrainLifterOptions& options, int step) {
   return CosineWithWarmup(options.learning_rate, step, options.steps, options.warmup_steps);
 }
 
-/// What must agree before a checkpoint's numbers mean anything.
+/// Configuration that must agree with a checkpoint's.
 std::string ToText(const TrainLifterOptions& options) {
   std::string text = Concatenate("lifter of ", options.num_inputs, " inputs, ", options.width, " channels, dilations");
   for (const int dilation : options.dilations) text += Concatenate(" ", dilation);
@@ -159,16 +159,16 @@ class LifterTrainer : public TrainedSystem {
   LifterLoss Learn(const Batch& batch, int step) {
     const double rate = LearningRate(options_, step);
     SetRate(optimizer_.get(), rate);
-    module_->zero_grad();  // of all weights: two optimizers share them
+    module_->zero_grad();  // of all weights, which two optimizers share
     LifterLoss loss =
         ComputeLifterLoss(module_(batch.features), batch.targets, {options_.nll_weight, options_.velocity_weight});
     loss.total.backward();
     gradient_norm_ = torch::nn::utils::clip_grad_norm_(module_->parameters(), options_.clip_norm);
-    if (!std::isfinite(gradient_norm_)) return loss;  // a step would spoil the weights
+    if (!std::isfinite(gradient_norm_)) return loss;  // a step would make the weights not finite
     optimizer_->step();
     muon_->Step(rate);
     const torch::NoGradGuard no_grad;
-    // Early steps count less, or the start would stay in the average for long.
+    // Lower decay in early steps, so that the average forgets the initial weights.
     const double keep = std::min(options_.average, (1.0 + step) / (10.0 + step));
     const auto from = module_->parameters();
     const auto to = average_->parameters();

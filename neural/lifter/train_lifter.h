@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the lifter (geometry/scene/lifter_weights.h): AdamW with a cosine schedule on windows that a source makes up
-/// as they are needed, exponential moving average of the weights, validation on windows of other seeds.
+/// Trains the lifter (geometry/scene/lifter_weights.h): AdamW with a cosine schedule on windows generated on demand by
+/// a source, exponential moving average of the weights, validation on windows of other seeds.
 ///
-/// A run folder holds `metrics.csv` (a line every `report_every` steps), `checkpoint.bin` (replaced whole or not at
-/// all) and, at the end, what the caller writes. A run that was interrupted goes on from its checkpoint and ends with
-/// the same bytes as one that was not (same machine, same number of threads).
+/// A run folder holds `metrics.csv` (a line every `report_every` steps), `checkpoint.bin` (replaced atomically) and the
+/// caller's final output. An interrupted run resumes from its checkpoint and ends with the same bytes as an
+/// uninterrupted one (same machine, same number of threads).
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace bodyloom {
 
-/// One window of T frames: what the network reads and what it should predict (tracking/lifter/lifter_input.h,
+/// One window of T frames: the network's input and target (tracking/lifter/lifter_input.h,
 /// geometry/scene/lifter_weights.h).
 struct LifterExample {
   std::vector<float> features;  ///< T·num_inputs
@@ -25,16 +25,16 @@ struct LifterExample {
   std::vector<float> up;        ///< T·3
   std::vector<float> contact;   ///< T·2
 };
-/// Fills the example that belongs to a seed; called from several threads.
+/// Fills the example of a seed; called from several threads.
 using LifterSource = std::function<void(uint64_t seed, LifterExample* example)>;
 
 struct TrainLifterOptions : TrainingRun {
-  const LifterWeights* begin_with = nullptr;  ///< of the same sizes; null: seeded random numbers
+  const LifterWeights* begin_with = nullptr;  ///< initial weights of the same sizes; null: random from the seed
   TrainLifterOptions() {
     steps = 10000;
     report_every = 100, validate_every = 1000, checkpoint_every = 500;
   }
-  int num_inputs = 0;   ///< features of a frame
+  int num_inputs = 0;   ///< features per frame
   int num_frames = 81;  ///< of a window
   int width = 256;      ///< channels
   std::vector<int> dilations = {1, 2, 4, 8, 16, 1};
@@ -42,16 +42,16 @@ struct TrainLifterOptions : TrainingRun {
   double learning_rate = 1.5e-3;
   int warmup_steps = 100;
   double weight_decay = 1e-3;
-  bool muon = true;  ///< for the matrices of the blocks (neural/training/optimizers.h); false: AdamW for everything
+  bool muon = true;  ///< for the matrices of the blocks (neural/training/optimizers.h); false: AdamW for all weights
   double clip_norm = 1;
-  double average = 0.998;  ///< of the moving average of the weights
+  double average = 0.998;  ///< decay of the moving average of the weights
   double nll_weight = 0.05, velocity_weight = 0.3;
   int validation_windows = 256;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
 struct TrainLifterSummary : TrainingOutcome {
-  double validation_distance = 0;       ///< mean |d| of the likeliest hypotheses, in torso + leg lengths
+  double validation_distance = 0;       ///< mean |d| of the most likely hypotheses, in torso + leg lengths
   double validation_best_distance = 0;  ///< error of each limb's best hypothesis
 };
 
@@ -60,9 +60,9 @@ struct TrainLifterResult {
   TrainLifterSummary summary;
 };
 
-/// `train` and `validation` are called with seeds that do not repeat within a run. Throws std::invalid_argument for
-/// options that are not valid and std::runtime_error when a file cannot be read or written, or a checkpoint is of
-/// another network. A loss that is not finite ends the run (kNotFinite) with the last checkpoint in place.
+/// `train` and `validation` are called with distinct seeds within a run. Throws std::invalid_argument for options that
+/// are not valid and std::runtime_error when a file cannot be read or written, or a checkpoint is of another network. A
+/// loss that is not finite ends the run (kNotFinite); the last checkpoint is kept.
 TrainLifterResult TrainLifter(const LifterSource& train, const LifterSource& validation,
                               const TrainLifterOptions& options);
 

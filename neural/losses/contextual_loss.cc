@@ -15,7 +15,7 @@ using torch::Tensor;
 
 constexpr int64_t kRowsAtOnce = 1024;  // bounds the memory when no gradient is requested
 
-/// B×C×h×w → B×C×N, a draw of N = max_points positions when there are more.
+/// B×C×h×w → B×C×N, a random subset of N = max_points positions if there are more.
 Tensor Points(const Tensor& features, const ContextualOptions& options) {
   Tensor points = features.flatten(2);
   if (options.max_points == 0 || points.size(2) <= options.max_points) return points;
@@ -24,7 +24,7 @@ Tensor Points(const Tensor& features, const ContextualOptions& options) {
   return points.index_select(2, order.slice(0, 0, options.max_points).to(points.device()));
 }
 
-/// Unit length over channels; a zero vector (a feature equal to the target's mean) stays zero.
+/// Normalises to unit length over channels; a zero vector (a feature equal to the target's mean) stays zero.
 Tensor Directions(const Tensor& points) { return points * (points.square().sum(1, true) + 1e-20).rsqrt(); }
 
 /// CX of one pair, C×N and C×M.

@@ -6,7 +6,7 @@
 namespace bodyloom {
 namespace {
 
-/// How far logits are from saying "real" (or "fake").
+/// Loss of logits with the label "real" (or "fake").
 torch::Tensor Distance(const torch::Tensor& logits, bool real, GanLossKind kind) {
   if (kind == GanLossKind::kLeastSquares) return (real ? logits - 1 : logits).square().mean();
   return torch::softplus(real ? -logits : logits).mean();

@@ -29,7 +29,7 @@ torch::Tensor MaskedL1Loss(const torch::Tensor& a, const torch::Tensor& b, const
   BODYLOOM_CHECK(a.dim() == 4 && mask.dim() == 4 && mask.size(0) == a.size(0) && mask.size(1) == 1 &&
                      mask.size(2) == a.size(2) && mask.size(3) == a.size(3),
                  "masked L1 loss: a mask of shape ", mask.sizes(), " for images of shape ", a.sizes());
-  // Values that do not count are replaced before the difference: 0 · NaN would be NaN, in the gradient too.
+  // Masked values are replaced before the difference: 0 · NaN would be NaN, also in the gradient.
   const torch::Tensor zero = torch::zeros({}, a.options());
   const torch::Tensor counts = mask != 0;
   const torch::Tensor difference = (torch::where(counts, a, zero) - torch::where(counts, b, zero)).abs();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// CS: contextual similarity of an image to a target that need not be aligned with it
 /// (neural/losses/contextual_loss.h), preset of Men et al., CVPR 2020 (ADGAN): VGG-19, relu3_2 and relu4_2, RGB in [0,
-/// 1] without normalisation, h = 0.1, all positions, one pair at a time (the published program centres by a batch of up
-/// to 48 pairs).
+/// 1] without normalisation, h = 0.1, all positions, one pair at a time (the published program centres over a batch of
+/// up to 48 pairs).
 ///
-/// That program's VGG is the converted Caffe model (names "conv1_1.weight", …); torchvision's weights are taken too,
-/// but give other values. It adds the two layers' CX (larger is better); tables with values above 2 (Yoon et al., CVPR
-/// 2021) are read as sums of −log CX (lower is better). Both are returned.
+/// The published program uses the converted Caffe model of VGG (names "conv1_1.weight", …); torchvision's weights are
+/// accepted too, but give other values. It sums CX over the two layers (larger is better); tables with values above 2
+/// (Yoon et al., CVPR 2021) are presumably sums of −log CX (lower is better). Both are returned.
 #pragma once
 
 #include <cstdint>
@@ -19,24 +19,24 @@
 namespace bodyloom {
 
 struct ContextualValue {
-  double similarity = 0;        ///< Σ CX over the two layers, 2 at best
-  double distance = 0;          ///< Σ −log CX, 0 at best
+  double similarity = 0;        ///< Σ CX over the two layers, at most 2
+  double distance = 0;          ///< Σ −log CX, at least 0
   bool random_features = true;  ///< not comparable with other programs' figures
 };
 
 class ContextualMetric {
  public:
-  /// A random-feature substitute (of 1/divisor of the channels) until Load is called.
+  /// Starts as a random-feature substitute (with 1/divisor of the channels) until Load is called.
   explicit ContextualMetric(int random_features_divisor = 1, uint64_t random_features_seed = 1);
   ~ContextualMetric();
   ContextualMetric(ContextualMetric&&) noexcept;
   ContextualMetric& operator=(ContextualMetric&&) noexcept;
 
-  /// Throws std::runtime_error naming source and tensor when one does not fit, std::invalid_argument for a network of
-  /// divided channels.
+  /// Throws std::runtime_error naming source and tensor when one does not fit, std::invalid_argument for a divisor
+  /// other than 1.
   void Load(const NamedWeights& vgg19, const std::string& source);
 
-  /// At least 8 pixels a side; the two may differ in size.
+  /// Images of at least 8 pixels a side; the two may differ in size.
   [[nodiscard]] ContextualValue operator()(const Image& image, const Image& target) const;
 
  private:

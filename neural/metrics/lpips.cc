@@ -30,7 +30,7 @@ FeatureNetworkOptions TrunkOptions(const LpipsOptions& options) {
 
 }  // namespace
 
-/// The channel weights, a tensor a tap: parameters named weight0 … weight4.
+/// The channel weights, one tensor per tap: parameters named weight0 … weight4.
 struct LpipsHeadsImpl : torch::nn::Module {
   explicit LpipsHeadsImpl(const std::vector<int64_t>& channels) {
     for (size_t k = 0; k < channels.size(); ++k) {
@@ -43,7 +43,7 @@ struct LpipsHeadsImpl : torch::nn::Module {
 TORCH_MODULE(LpipsHeads);
 
 struct LpipsFeatures::Impl {
-  std::vector<Tensor> unit;  ///< a tap: 1×C×h×w, unit length over channels
+  std::vector<Tensor> unit;  ///< per tap: 1×C×h×w, unit length over channels
   int64_t generation = 0;    ///< of the network's weights
 };
 
@@ -70,7 +70,7 @@ void Lpips::Load(const NamedWeights& trunk, const std::string& trunk_source, con
   options.name_in_file = [](const std::string& own) { return "lin" + own.substr(6) + ".model.1.weight"; };
   std::vector<int64_t> channels;
   for (const Tensor& weight : network_->heads->weights) channels.push_back(weight.size(1));
-  LpipsHeads loaded(channels);  // taken over when the trunk fits too
+  LpipsHeads loaded(channels);  // used only if the trunk fits too
   LoadWeights(heads, heads_source, loaded.get(), options);
   network_->trunk->Load(trunk, trunk_source);
   network_->heads = loaded;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// LPIPS v0.1: how different two images look, as features that were calibrated on people's judgements see it.
+/// LPIPS v0.1: perceptual distance of two images in network features calibrated on human judgements.
 ///
 /// RGB in [−1, 1]; (x − shift)/scale with shift (−.030, −.088, −.188) and scale (.458, .448, .450); features of AlexNet
 /// (relu1 … relu5) or VGG-16 (relu1_2, 2_2, 3_3, 4_3, 5_3); each position's channels divided by their norm + 1e-10;
 /// squared differences weighted by the channel weights of "lin{k}.model.1.weight" (1×C×1×1), averaged over positions,
-/// summed over layers. Whole images, no crop or mask (blacken the background of both to leave it out); 0 for equal
+/// summed over layers. Whole images, no crop or mask (set the background of both to black to exclude it); 0 for equal
 /// images; tables often print 100 or 1000 times the value.
 /// Source: Zhang et al., "The Unreasonable Effectiveness of Deep Features as a Perceptual Metric", CVPR 2018, and
-/// version 0.1 of its program.
+/// version 0.1 of its code.
 ///
-/// Without the trained weights a random-feature substitute measures (neural/networks/vgg.h, channel weights 1); its
-/// values say so and compare with nobody else's.
+/// Without the trained weights a random-feature substitute is used (neural/networks/vgg.h, channel weights 1); its
+/// values are marked and not comparable with published ones.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct LpipsValue {
   bool random_features = true;  ///< not comparable with other programs' figures
 };
 
-/// What the network sees in one image, kept for several comparisons.
+/// The network's features of one image, for several comparisons.
 class LpipsFeatures {
  private:
   friend class Lpips;
@@ -45,7 +45,7 @@ class LpipsFeatures {
 
 class Lpips {
  public:
-  /// A random-feature substitute until Load is called.
+  /// Starts as a random-feature substitute until Load is called.
   explicit Lpips(const LpipsOptions& options = {});
   ~Lpips();
   Lpips(Lpips&&) noexcept;
@@ -53,16 +53,16 @@ class Lpips {
 
   /// `trunk`: torchvision's weights ("features.0.weight", …); `heads`: LPIPS' own ("lin0.model.1.weight", …). Throws
   /// std::runtime_error naming source and tensor when one does not fit (then the substitute stays),
-  /// std::invalid_argument for a network of divided channels.
+  /// std::invalid_argument for a divisor other than 1.
   void Load(const NamedWeights& trunk, const std::string& trunk_source, const NamedWeights& heads,
             const std::string& heads_source);
 
   [[nodiscard]] bool has_random_features() const;
 
-  /// At least 31 pixels a side (VGG-16: 16); std::invalid_argument otherwise. Features of a network that has loaded
-  /// other weights since are refused too.
+  /// Computes the features of an image of at least 31 pixels a side (VGG-16: 16); std::invalid_argument otherwise. They
+  /// become invalid when other weights are loaded.
   [[nodiscard]] LpipsFeatures Features(const Image& image) const;
-  /// Images of the same size; std::invalid_argument otherwise.
+  /// Distance of images of the same size; std::invalid_argument otherwise, and for features from other weights.
   [[nodiscard]] LpipsValue Distance(const LpipsFeatures& a, const LpipsFeatures& b) const;
   [[nodiscard]] LpipsValue Distance(const Image& a, const Image& b) const;
 
@@ -71,10 +71,10 @@ class Lpips {
   std::unique_ptr<Network> network_;
 };
 
-/// On AlexNet with these weights; the substitute when either is empty. Throws as Lpips::Load.
+/// LPIPS on AlexNet with these weights; the substitute when either is empty. Throws as Lpips::Load.
 Lpips LpipsFrom(const WeightsFrom& alexnet, const WeightsFrom& heads);
 
-/// Name of a figure by what measured it: NAME_alex or NAME_random_features.
+/// Name of a figure by the features used: NAME_alex or NAME_random_features.
 std::string LpipsName(const char* name, bool random_features);
 
 }  // namespace bodyloom

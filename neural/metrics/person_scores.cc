@@ -24,7 +24,7 @@ bool ShowsPerson(const PhotoFrame& truth, size_t pixel) {
 
 }  // namespace
 
-PersonScoring LikenessScoring(const LikenessWeights& weights, PictureSimilarity ssim) {
+PersonScoring LikenessScoring(const LikenessWeights& weights, ImageSimilarity ssim) {
   const bool trained = !weights.vgg19.empty();
   const auto contextual = std::make_shared<ContextualMetric>(trained ? 1 : kContextualRandomFeaturesDivisor);
   if (trained) contextual->Load(weights.vgg19.weights, weights.vgg19.source);
@@ -33,40 +33,41 @@ PersonScoring LikenessScoring(const LikenessWeights& weights, PictureSimilarity 
 
 PersonScorer::PersonScorer(PersonScoring scoring) : scoring_(std::move(scoring)) {}
 
-void PersonScorer::Add(const PersonPicture& picture, const PhotoFrame& truth) {
+void PersonScorer::Add(const RenderedPerson& rendered, const PhotoFrame& truth) {
   const size_t pixels = static_cast<size_t>(truth.size) * truth.size;
   const auto of_window = [&](size_t size) { return size == 0 || size == pixels; };
-  BODYLOOM_CHECK(picture.size == truth.size && picture.image.size() == 3 * pixels && picture.alpha.size() == pixels &&
-                     of_window(picture.labels.size()) && truth.image.size() == 3 * pixels &&
-                     of_window(truth.labels.size()),
-                 "scores: a picture of ", picture.size, " px beside a truth of ", truth.size);
+  BODYLOOM_CHECK(rendered.size == truth.size && rendered.image.size() == 3 * pixels &&
+                     rendered.alpha.size() == pixels && of_window(rendered.labels.size()) &&
+                     truth.image.size() == 3 * pixels && of_window(truth.labels.size()),
+                 "scores: an image of ", rendered.size, " px beside a truth of ", truth.size);
   ++frames_;
-  draws_labels_ = draws_labels_ && !picture.labels.empty() && !truth.labels.empty();
+  draws_labels_ = draws_labels_ && !rendered.labels.empty() && !truth.labels.empty();
   for (size_t i = 0; i < pixels; ++i) {
     const bool shown = ShowsPerson(truth, i);
-    const size_t drawn = picture.labels.empty() ? (picture.alpha[i] >= 0.5F ? 1 : 0) : picture.labels[i];
+    const size_t drawn = rendered.labels.empty() ? (rendered.alpha[i] >= 0.5F ? 1 : 0) : rendered.labels[i];
     overlap_.Add(drawn, truth.labels.empty() ? size_t{shown} : size_t{truth.labels[i]});
     if (!shown) continue;
     for (size_t c = 0; c < 3; ++c) {
-      const double error = double{picture.image[c * pixels + i]} - truth.image[c * pixels + i];
+      const double error = double{rendered.image[c * pixels + i]} - truth.image[c * pixels + i];
       l1_ += std::abs(error);
       squared_ += error * error;
     }
     values_ += 3;
   }
-  if (scoring_.lpips || scoring_.contextual || scoring_.ssim) AddLikeness(picture, truth);
+  if (scoring_.lpips || scoring_.contextual || scoring_.ssim) AddLikeness(rendered, truth);
 }
 
-void PersonScorer::AddLikeness(const PersonPicture& picture, const PhotoFrame& truth) {
-  const int size = picture.size;
-  const Image image = PictureOf(picture.image, size, size), true_image = PictureOf(truth.image, size, size);
+void PersonScorer::AddLikeness(const RenderedPerson& rendered, const PhotoFrame& truth) {
+  const int size = rendered.size;
+  const Image image = ImageFromPlanes(rendered.image, size, size),
+              true_image = ImageFromPlanes(truth.image, size, size);
   if (scoring_.ssim) ssim_ += scoring_.ssim(true_image, image);
   if (scoring_.lpips) {
     if (std::exchange(next_person_, false)) lpips_of_people_.emplace_back();
     lpips_of_people_.back().push_back(scoring_.lpips->Distance(image, true_image).value);
   }
   if (!scoring_.contextual) return;
-  if (size > PersonScores::kLargestContextualPicture) {
+  if (size > PersonScores::kLargestContextualImage) {
     contextual_ = kNotScored;
     return;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Agreement of two labellings of the same pixels: intersection over union, by class and of the foreground.
+/// Intersection over union of two labellings of the same pixels, by class and of the foreground.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@
 
 namespace bodyloom {
 
-/// Counts pixels; class 0 is the background. Ratios of nothing are NaN.
+/// Counts pixels; class 0 is the background. Ratios are NaN for classes that do not occur.
 class ClassOverlap {
  public:
   explicit ClassOverlap(int num_classes) : both_(num_classes), predicted_(num_classes), true_(num_classes) {}
 
-  /// One pixel: the class it was given and its own, both below the number of classes.
+  /// Adds a pixel with its predicted and true class, both below the number of classes.
   void Add(size_t predicted, size_t truth) {
     both_[predicted] += predicted == truth ? 1 : 0;
     ++predicted_[predicted];
@@ -26,7 +26,7 @@ class ClassOverlap {
     foreground_both_ += predicted != 0 && truth != 0 ? 1 : 0;
     foreground_either_ += predicted != 0 || truth != 0 ? 1 : 0;
   }
-  /// As many predicted as true labels; throws std::invalid_argument otherwise.
+  /// Adds pixels; throws std::invalid_argument unless there are as many predicted as true labels.
   void Add(const std::vector<uint8_t>& predicted, const std::vector<uint8_t>& truth) {
     BODYLOOM_CHECK(predicted.size() == truth.size(), "class overlap: ", predicted.size(), " pixels beside ",
                    truth.size());
@@ -59,8 +59,8 @@ class ClassOverlap {
   int64_t foreground_both_ = 0, foreground_either_ = 0;
 };
 
-/// SSIM of two pictures of the same size; the caller says which one (neural/ knows no evaluation library). Empty: not
-/// measured.
-using PictureSimilarity = std::function<double(const Image& truth, const Image& result)>;
+/// SSIM of two images of the same size, provided by the caller (neural/ does not depend on the evaluation library).
+/// Empty: not measured.
+using ImageSimilarity = std::function<double(const Image& truth, const Image& result)>;
 
 }  // namespace bodyloom

@@ -14,9 +14,9 @@ double TemporalLpipsOf(const Lpips& lpips, const LpipsFeatures& result, const Lp
   return std::abs(lpips.Distance(result, result_before).value - lpips.Distance(truth, truth_before).value);
 }
 
-LpipsFeatures TemporalLpips::Moved(const Seen& picture, int x, int y) const {
-  if (x == 0 && y == 0) return picture.features;
-  return lpips_.Features(ToImage(Shifted(ToTensor(picture.image), x, y)));
+LpipsFeatures TemporalLpips::Moved(const Seen& rendered, int x, int y) const {
+  if (x == 0 && y == 0) return rendered.features;
+  return lpips_.Features(ToImage(Shifted(ToTensor(rendered.image), x, y)));
 }
 
 TemporalLpips::Frame TemporalLpips::Add(const Image& result, const Image& truth, int before_x, int before_y) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// LPIPS and tLPIPS of a video, frame by frame, each frame's features computed once.
+/// Computes LPIPS and tLPIPS of a video frame by frame; each frame's features are computed once.
 ///
-/// tLPIPS of frame t = |LPIPS(s_t, s_{t−1}) − LPIPS(g_t, g_{t−1})| with result s and truth g: whether the result
-/// changes as much as the truth does. Pictures that are windows which follow a person are laid over each other first
-/// (Shifted, neural/base/image_tensor.h): a window that jumps is no change of the picture. A video's value is the mean
-/// over its frames but the first (of every cut). Tables print 100 times that. Source: Chu et al., "Learning Temporal
+/// tLPIPS of frame t = |LPIPS(s_t, s_{t−1}) − LPIPS(g_t, g_{t−1})| with result s and truth g: the difference between
+/// the changes of result and truth. Windows that follow a person are aligned first (Shifted,
+/// neural/base/image_tensor.h), so that a jump of the window is not a change. A video's value is the mean over its
+/// frames except the first (of every cut). Tables print 100 times that. Source: Chu et al., "Learning Temporal
 /// Coherence via Self-Supervision for GAN-based Video Generation", 2020 (which crops and drops two frames at each end;
 /// this does not), as used by Yoon et al., CVPR 2022.
 #pragma once
@@ -15,14 +15,14 @@
 
 namespace bodyloom {
 
-/// | d(s_t, s_{t−1}) − d(g_t, g_{t−1}) | of the four pictures' features, d being `lpips`.
+/// | d(s_t, s_{t−1}) − d(g_t, g_{t−1}) | from the four images' features, with the distance d of `lpips`.
 double TemporalLpipsOf(const Lpips& lpips, const LpipsFeatures& result, const LpipsFeatures& result_before,
                        const LpipsFeatures& truth, const LpipsFeatures& truth_before);
 
 struct TemporalLpipsMean {
   int frames = 0;
   double lpips = 0;   ///< mean over frames
-  double tlpips = 0;  ///< mean over frames that follow another; 0 when none does
+  double tlpips = 0;  ///< mean over frames with a predecessor; 0 if there are none
   int pairs = 0;      ///< of them
   bool random_features = true;
 };
@@ -38,23 +38,24 @@ class TemporalLpips {
   /// `lpips` must outlive this.
   explicit TemporalLpips(const Lpips& lpips) : lpips_(lpips) {}
 
-  /// The next frame. The pictures of the frame before lie at (before_x, before_y) in these; what they do not reach is
-  /// black. Throws std::invalid_argument when the images differ in size, from each other or from the frame before.
+  /// Adds the next frame. The previous frame's images lie at (before_x, before_y) in the current ones; pixels outside
+  /// them are black. Throws std::invalid_argument when the images differ in size, from each other or from the previous
+  /// frame.
   Frame Add(const Image& result, const Image& truth, int before_x = 0, int before_y = 0);
 
-  /// The next frame does not follow the last one: it has no tLPIPS.
+  /// Starts a new sequence: the next frame has no tLPIPS.
   void Restart() { follows_ = false; }
 
   [[nodiscard]] TemporalLpipsMean Mean() const;
 
  private:
-  /// A frame's picture, to be laid elsewhere, and what the network sees in it where it lies.
+  /// A frame's image, for shifting, and its features without shift.
   struct Seen {
     Image image;
     LpipsFeatures features;
   };
-  /// What the network sees in a picture moved by (x, y).
-  [[nodiscard]] LpipsFeatures Moved(const Seen& picture, int x, int y) const;
+  /// Features of an image shifted by (x, y).
+  [[nodiscard]] LpipsFeatures Moved(const Seen& seen, int x, int y) const;
 
   const Lpips& lpips_;
   Seen last_result_, last_truth_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Frames as tensors. Internal: includes LibTorch.
+/// Converts frames to tensors. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -12,7 +12,8 @@
 
 namespace bodyloom {
 
-/// Of frames of one size. Throws std::invalid_argument when a frame has not what the configuration needs, naming it.
+/// Converts frames of one size. Throws std::invalid_argument when a frame lacks what the configuration needs, naming
+/// it.
 MotionInput InputOf(std::span<const MotionFrame> frames, const MotionConfig& config);
 
 struct MotionTruth {
@@ -20,11 +21,11 @@ struct MotionTruth {
   torch::Tensor labels;      ///< B×K×h×w one-hot; undefined when the frames have none
   torch::Tensor normals;     ///< B×3×h×w; undefined when the frames have none
   torch::Tensor foreground;  ///< B×1×h×w: labels other than 0, else where the image is not black
-  /// As the past of a following frame: what the frames do not have is zero.
+  /// The truth as the past of a following frame; missing parts are zero.
   [[nodiscard]] MotionState State(const MotionConfig& config) const;
 };
 
-/// A part counts as there when all frames have it. Throws std::invalid_argument when images are missing, sizes differ
+/// Parts are defined only if all frames have them. Throws std::invalid_argument when images are missing, sizes differ
 /// or a label is beyond the configuration's classes.
 MotionTruth TruthOf(std::span<const MotionFrame> frames, const MotionConfig& config);
 

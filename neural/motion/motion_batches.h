@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The batches of a training run, prefetched by a thread of their own. Internal: includes LibTorch.
+/// Batches of a training run, prefetched by a separate thread. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -15,20 +15,20 @@ namespace bodyloom {
 
 struct MotionBatch {
   std::vector<RolloutStep> steps;
-  std::vector<MotionFrame> frames;  ///< only their windows' places are left
-  std::vector<PixelBox> boxes;      ///< what the networks see of each window
+  std::vector<MotionFrame> frames;  ///< without images and maps, only the positions of their windows
+  std::vector<PixelBox> boxes;      ///< part of each window that the networks see
   MotionInput input;                ///< of the boxes
   MotionTruth truth;                ///< of the boxes
-  std::vector<MotionState> past;  ///< whole windows of the roll-outs that restart from truth: 1×…; else without parts
+  std::vector<MotionState> past;  ///< whole windows, 1×…, for roll-outs that restart from truth; else without parts
 };
 
-/// Steps first, first + 1, … last − 1 of a plan. `reach`: of clothes, pixels (config.around_body).
+/// Batches of steps first … last − 1 of a plan. `reach`: of clothes, pixels (for config.around_body).
 class MotionBatches {
  public:
   MotionBatches(const MotionFrameSource& source, const MotionConfig& config, int reach, RolloutPlan plan, int64_t first,
                 int64_t last);
 
-  /// The next batch; waits for it. Throws what the source threw.
+  /// Waits for the next batch and returns it. Throws what the source threw.
   MotionBatch Take() { return ahead_.Take(); }
   [[nodiscard]] double waited_s() const { return ahead_.waited_s(); }
 

@@ -59,7 +59,7 @@ bool MotionConfig::IsValid(std::string* why) const {
   }
   if (valid && descriptor == MotionDescriptor::kDense2d &&
       profile.encoder_widths.size() > profile.decoder_widths.size()) {
-    if (why != nullptr) *why = "dense2d: the encoder has more levels than the decoders, whose pictures it works on";
+    if (why != nullptr) *why = "dense2d: the encoder has more levels than the decoders, whose images it works on";
     return false;
   }
   return valid;
@@ -76,7 +76,7 @@ std::string ToText(const MotionConfig& config) {
   text << "; discriminator " << p.discriminator_width << "; motion channels " << config.motion_channels << "; labels "
        << config.num_labels << "; shape " << config.shape << "; normals " << config.normals << "; motion "
        << config.motion << "; surface " << config.surface << "; learned texture " << config.texture;
-  if (config.around_body) text << "; around the body";  // older checkpoints know whole windows only
+  if (config.around_body) text << "; around the body";  // older checkpoints use whole windows only
   if (config.descriptor == MotionDescriptor::kDense2d) text << "; descriptor " << ToText(config.descriptor);
   return text.str();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Configuration of the motion-dependent renderer (Yoon et al., CVPR 2022): sizes, and which parts are left out.
+/// Configuration of the motion-dependent renderer (Yoon et al., CVPR 2022): sizes and ablations.
 #pragma once
 
 #include <string>
@@ -11,25 +11,25 @@ namespace bodyloom {
 /// (docs/motion_renderer.md).
 struct MotionProfile {
   std::string name;
-  int image_size = 0;                          ///< longer side of what is rendered, pixels
+  int image_size = 0;                          ///< longer side of the rendered window, pixels
   int uv_size = 0;                             ///< side of the UV maps, texels
   int features = 0;                            ///< channels d of the motion descriptor f_3D
   int texture_size = 0, texture_features = 0;  ///< side, texels, and channels of the learned texture
   std::vector<int> encoder_widths, decoder_widths;
   int discriminator_width = 0;
-  int perceptual_divisor = 1;  ///< divides VGG's channels where a random-feature substitute takes its place
+  int perceptual_divisor = 1;  ///< divides the channels of VGG's random-feature substitute
 };
 
 /// "paper" (512², the published resolutions), "cpu" (256², trains and runs on two cores), "tiny" (128², for tests).
 /// Throws std::invalid_argument for other names, listing these.
 const MotionProfile& MotionProfileNamed(const std::string& name);
 
-/// What the networks are told of the motion.
+/// Representation of motion as the networks' input.
 enum class MotionDescriptor {
   kSurface,  ///< normals and velocities of the body's surface, in UV: the paper's
-  /// Dense UV coordinates and keypoints of ten frames, in the picture's plane, as Wang et al., "Dance In the Wild",
-  /// 2021, describe motion: what the paper compares its own descriptor with (data_tools/descriptors/dense_history.h).
-  /// The encoder works on pictures and its features go straight to the decoders.
+  /// Dense UV coordinates and keypoints of ten frames, in the image's plane, as Wang et al., "Dance In the Wild", 2021,
+  /// describe motion: the paper's baseline for its own descriptor (data_tools/descriptors/dense_history.h). The encoder
+  /// works on images and its features go straight to the decoders.
   kDense2d
 };
 /// "surface", "dense2d".
@@ -47,23 +47,23 @@ struct MotionConfig {
   // coordinates in place of the projected motion descriptor.
   bool shape = true, normals = true, motion = true;
   /// The decoders also see the rendered UV coordinates, beside the projected descriptor. The paper's do not: they must
-  /// find out from normals and velocities alone which part of the body a pixel shows, and learn it slowly
+  /// infer the visible part of the body from normals and velocities alone, which is learned slowly
   /// (docs/motion_renderer.md).
   bool surface = true;
-  /// The decoders also see a learned texture: values by texel that no motion changes, trained with the networks. Not in
-  /// the paper, whose networks must keep every check of a shirt in their weights; source: Thies, Zollhöfer, Nießner,
+  /// The decoders also see a learned texture: motion-independent values per texel, trained with the networks. Not in
+  /// the paper, whose networks must store patterns of clothes in their weights; source: Thies, Zollhöfer, Nießner,
   /// "Deferred Neural Rendering", SIGGRAPH 2019.
   bool texture = true;
-  /// The networks look only at where the body is and as far around it as clothes reach (neural/motion/person_box.h),
-  /// not at the whole window. Their instance norms depend on what they look at, so a run keeps to one of both.
+  /// The networks see only the box of the body grown by the reach of clothes (neural/motion/person_box.h) instead of
+  /// the whole window. Their instance norms depend on this, so it must not change within a run.
   bool around_body = false;
 
-  /// A side of the images must be a multiple of this.
+  /// Sides of the images must be multiples of this.
   [[nodiscard]] int Multiple() const { return 1 << profile.decoder_widths.size(); }
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-/// One line that tells two configurations apart: names and values of everything that the networks' shapes depend on.
+/// One line that identifies the configuration: names and values of everything that the networks' shapes depend on.
 std::string ToText(const MotionConfig& config);
 
 }  // namespace bodyloom

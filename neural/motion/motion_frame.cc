@@ -5,12 +5,12 @@
 #include <limits>
 #include <vector>
 
-#include "render/garment/clothes_extent.h"
+#include "render/garment/clothes_offset_map.h"
 
 namespace bodyloom {
 namespace {
 
-/// Of every pixel the largest of the distances along x and y to the nearest pixel of the body.
+/// Chebyshev distance of every pixel to the body.
 std::vector<int> DistanceToBody(const MotionFrame& frame) {
   const int w = frame.width, h = frame.height;
   const int far = w + h;

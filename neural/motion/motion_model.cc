@@ -16,7 +16,7 @@ using torch::Tensor;
 constexpr int kUvChannels = 3;  // u, v, 1
 constexpr double kTinyLength = 1e-6;
 
-/// Unit vectors; nearly zero ones stay short instead of being blown up.
+/// Normalises vectors; nearly zero ones stay short.
 Tensor Unit(const Tensor& x) { return x / (x.square().sum(1, true) + kTinyLength).sqrt(); }
 
 }  // namespace
@@ -97,7 +97,7 @@ MotionStepResult MotionModelImpl::forward(const MotionInput& input, const Motion
   return Decode(Project(descriptor, input.uv, input.body), before);
 }
 
-MotionState MotionModelImpl::Nothing(int64_t batch, int64_t height, int64_t width) const {
+MotionState MotionModelImpl::InitialState(int64_t batch, int64_t height, int64_t width) const {
   MotionState state;
   const auto options = appearance_decoder->parameters().front().options().requires_grad(false);
   const auto zeros = [&](int64_t channels) { return torch::zeros({batch, channels, height, width}, options); };
@@ -109,7 +109,7 @@ MotionState MotionModelImpl::Nothing(int64_t batch, int64_t height, int64_t widt
 
 namespace {
 
-/// Adam moves a texel by its rate a step, and most texels are seen in few of them.
+/// Gain of the learned texture: Adam changes a texel by its rate per step, and most texels are seen in few steps.
 constexpr double kGain = 10;
 
 }  // namespace

@@ -9,10 +9,10 @@
 /// Source: Yoon et al., "Learning Motion-Dependent Appearance for High-Fidelity Rendering of Dynamic Humans from a
 /// Single Camera", CVPR 2022, Section 3; channels and levels: neural/motion/motion_config.h.
 ///
-/// With the descriptor dense2d E sees dense UV coordinates and keypoints of ten frames in the picture's plane, and f̂
-/// is its output at every pixel, on the body and off it.
-/// With `surface` (not in the paper) f̂ has the rendered UV coordinates (u, v, 1) beside Π f_3D; with `texture`
-/// (neither) also Π of a learned texture. Without shape there is no ŝ: Â = sigmoid a must learn where the person ends.
+/// With the descriptor dense2d the input of E is dense UV coordinates and keypoints of ten frames in the image's plane,
+/// and f̂ is its output at every pixel, on the body and off it.
+/// With `surface` (not in the paper) f̂ has the rendered UV coordinates (u, v, 1) beside Π f_3D; with `texture` (not in
+/// the paper) also Π of a learned texture. Without shape there is no ŝ: Â = sigmoid a must learn the person's outline.
 /// Without motion f̂ is the rendered UV itself, (u, v, 1) on the body and 0 elsewhere, and the learned texture. Without
 /// normals n̂ is left out.
 #pragma once
@@ -25,18 +25,17 @@
 
 namespace bodyloom {
 
-// A learned texture, the appearance of a person whatever the motion: values by texel, trained with the networks.
-// Internal: includes LibTorch.
+// A learned texture, the motion-independent appearance of a person: values per texel, trained with the networks.
 //
-// x = gain · Π T          C channels at the pixels that see the body, 0 elsewhere
-// A x, B x                what the classes' and the colour's logits are without anything that the networks add
+//   x = gain · Π T          C channels at the pixels that see the body, 0 elsewhere
+//   A x, B x                logits of classes and colour, to which those of the networks are added
 // Source of T: Thies, Zollhöfer, Nießner, "Deferred Neural Rendering", SIGGRAPH 2019; A and B are this project's.
 
 struct LearnedTextureImpl : torch::nn::Module {
-  /// `num_labels` 0: no A. T begins with zeros.
+  /// `num_labels` 0: no A. T is initialised with zeros.
   LearnedTextureImpl(int size, int features, int num_labels);
 
-  /// x of B×2×h×w coordinates and B×1×h×w body.
+  /// Computes x from B×2×h×w coordinates and B×1×h×w body.
   torch::Tensor forward(const torch::Tensor& uv, const torch::Tensor& body);
 
   torch::Tensor values;                                                  ///< T: 1×C×S×S
@@ -44,12 +43,12 @@ struct LearnedTextureImpl : torch::nn::Module {
 };
 TORCH_MODULE(LearnedTexture);
 
-/// Of B frames: B×channels×U×U (dense2d: B×channels×h×w), B×2×h×w, B×1×h×w.
+/// Input of B frames: B×channels×U×U (dense2d: B×channels×h×w), B×2×h×w, B×1×h×w.
 struct MotionInput {
   torch::Tensor motion, uv, body;
 };
 
-/// What a frame hands on to the next. Parts that the configuration leaves out are undefined.
+/// Recurrent state from one frame to the next. Parts that the configuration leaves out are undefined.
 struct MotionState {
   torch::Tensor labels;                               ///< B×K×h×w probabilities
   torch::Tensor image;                                ///< B×3×h×w
@@ -61,20 +60,20 @@ struct MotionStepResult {
   MotionState state;
   torch::Tensor label_logits;  ///< B×K×h×w, undefined without shape
   torch::Tensor foreground;    ///< B×1×h×w, 1 without shape
-  torch::Tensor colour;        ///< B×3×h×w, sigmoid a: as if the person were everywhere
+  torch::Tensor colour;        ///< B×3×h×w, sigmoid a, not multiplied by the foreground
 };
 
 struct MotionModelImpl : torch::nn::Module {
   explicit MotionModelImpl(const MotionConfig& config);
 
-  /// f_3D of B×channels×U×U; for dense2d the features at every pixel.
+  /// Computes f_3D from B×channels×U×U; for dense2d the features at every pixel.
   torch::Tensor Encode(const torch::Tensor& motion);
-  /// f̂ from f_3D (ignored, and may be undefined, without motion).
+  /// Computes f̂ from f_3D (ignored, and may be undefined, without motion).
   torch::Tensor Project(const torch::Tensor& descriptor, const torch::Tensor& uv, const torch::Tensor& body);
   MotionStepResult Decode(const torch::Tensor& projected, const MotionState& before);
   MotionStepResult forward(const MotionInput& input, const MotionState& before);
   /// The past of a clip's first frame: zeros.
-  [[nodiscard]] MotionState Nothing(int64_t batch, int64_t height, int64_t width) const;
+  [[nodiscard]] MotionState InitialState(int64_t batch, int64_t height, int64_t width) const;
 
   MotionConfig config;
   UNet encoder{nullptr}, shape_decoder{nullptr}, appearance_decoder{nullptr};

@@ -18,19 +18,19 @@ class MotionRenderer::Impl {
         score_(options.score),
         scorer_(config_, {options.lpips, options.ssim}),
         roll_(LoadModel<MotionModel>(path, config, options.num_threads, options.device), options.warmup_iterations,
-              {options.reach, options.anywhere}) {}
+              {options.reach, options.whole_window}) {}
 
-  MotionPicture Next(const MotionFrame& frame) {
+  MotionImage Next(const MotionFrame& frame) {
     const MotionStepResult result = roll_.Next(frame);
     if (score_) scorer_.Add(result.state, TruthOf(std::span(&frame, 1), config_), frame.before_x, frame.before_y);
-    MotionPicture picture;
-    picture.width = frame.width;
-    picture.height = frame.height;
-    picture.image = HostValues<float>(result.state.image);
-    picture.alpha = HostValues<float>(result.foreground);
-    if (result.state.normals.defined()) picture.normals = HostValues<float>(result.state.normals);
-    if (result.state.labels.defined()) picture.labels = HostValues<uint8_t>(result.state.labels.argmax(1));
-    return picture;
+    MotionImage rendered;
+    rendered.width = frame.width;
+    rendered.height = frame.height;
+    rendered.image = HostValues<float>(result.state.image);
+    rendered.alpha = HostValues<float>(result.foreground);
+    if (result.state.normals.defined()) rendered.normals = HostValues<float>(result.state.normals);
+    if (result.state.labels.defined()) rendered.labels = HostValues<uint8_t>(result.state.labels.argmax(1));
+    return rendered;
   }
 
   void ForgetPast() { roll_.Restart(); }
@@ -54,7 +54,7 @@ MotionRenderer::MotionRenderer(const std::string& checkpoint_path, const MotionC
     : impl_(std::make_unique<Impl>(checkpoint_path, config, options)) {}
 MotionRenderer::~MotionRenderer() = default;
 
-MotionPicture MotionRenderer::Next(const MotionFrame& frame) { return impl_->Next(frame); }
+MotionImage MotionRenderer::Next(const MotionFrame& frame) { return impl_->Next(frame); }
 void MotionRenderer::Restart() { impl_->Restart(); }
 void MotionRenderer::ForgetPast() { impl_->ForgetPast(); }
 MotionScores MotionRenderer::scores() const { return impl_->scores(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A trained motion-dependent renderer at work: motion in, pictures out.
+/// Inference with a trained motion-dependent renderer: from motion to images.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@
 namespace bodyloom {
 
 struct MotionRendererOptions {
-  int warmup_iterations = 50;  ///< of a clip's first frame, as Kappel et al., CVPR 2021
+  int warmup_iterations = 50;  ///< for a clip's first frame, as in Kappel et al., CVPR 2021
   int reach = 0;               ///< of clothes beyond the body, pixels (neural/motion/motion_frame.h); 0: not known
-  bool anywhere = false;       ///< what lies beyond reach may still be the person (roll_out.h)
-  bool score = false;          ///< compare every frame with the truth that it holds
-  /// With `score`: whole windows too, by LPIPS and tLPIPS (empty: not) and SSIM (empty: not).
+  bool whole_window = false;   ///< pixels beyond reach may still be the person (roll_out.h)
+  bool score = false;          ///< compare every frame with its truth
+  /// With `score`: also compare whole windows by LPIPS and tLPIPS (unless empty) and SSIM (unless empty).
   std::shared_ptr<const Lpips> lpips = {};
-  PictureSimilarity ssim = {};
+  ImageSimilarity ssim = {};
   int num_threads = 0;         ///< 0: all cores
   std::string device = "cpu";  ///< or "cuda"
 };
@@ -35,21 +35,21 @@ class MotionRenderer {
   MotionRenderer(const MotionRenderer&) = delete;
   MotionRenderer& operator=(const MotionRenderer&) = delete;
 
-  /// The next frame of the clip. Throws std::invalid_argument when the frame's sizes do not fit, or it is to be
-  /// compared and has no image.
-  MotionPicture Next(const MotionFrame& frame);
-  /// The next frame begins another clip.
+  /// Renders the next frame of the clip. Throws std::invalid_argument when the frame's sizes do not fit, or it is to be
+  /// scored and has no image.
+  MotionImage Next(const MotionFrame& frame);
+  /// Starts another clip with the next frame.
   void Restart();
-  /// The next frame is rendered as if it began another clip, but is still compared as the one that follows.
+  /// Renders the next frame as the first of a clip, but scores it as the successor of the last one.
   void ForgetPast();
 
-  /// Of all frames compared so far.
+  /// Scores of all frames so far.
   [[nodiscard]] MotionScores scores() const;
-  /// Of the last frame compared.
+  /// Scores of the last frame.
   [[nodiscard]] MotionFrameScores last_scores() const;
 
-  /// Frames whose motion maps (and surface coordinates) were those of the frame before: their descriptors
-  /// (projections) were not computed again.
+  /// Numbers of frames with the same motion maps (and surface coordinates) as the previous one, whose descriptors
+  /// (projections) were reused.
   [[nodiscard]] int64_t descriptors_kept() const;
   [[nodiscard]] int64_t projections_kept() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Scores of a rolled-out clip against the truth. Internal: includes LibTorch.
+/// Scores a rolled-out clip against the truth. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -15,23 +15,23 @@
 
 namespace bodyloom {
 
-/// Of whole windows beside the foreground's scores. Windows below kSmallestSide are not compared by them.
+/// Metrics of whole windows, in addition to those of the foreground. Not computed for windows below kSmallestSide.
 struct WindowScoring {
-  static constexpr int kSmallestSide = 32;  ///< pixels, that LPIPS' network takes
+  static constexpr int kSmallestSide = 32;  ///< pixels, required by LPIPS' network
   std::shared_ptr<const Lpips> lpips;       ///< empty: neither LPIPS nor tLPIPS
-  PictureSimilarity ssim;
+  ImageSimilarity ssim;
 };
 
-/// Sums over frames, one at a time in order; windows may move between them.
+/// Accumulates scores over frames in order; windows may move between them.
 class MotionScorer {
  public:
   explicit MotionScorer(const MotionConfig& config, const WindowScoring& windows = {});
-  /// One frame (B = 1) and where the window of the frame before lies in this one.
+  /// Adds one frame (B = 1); (before_x, before_y) is the position of the previous window in this one.
   void Add(const MotionState& predicted, const MotionTruth& truth, int before_x, int before_y);
-  /// The next frame does not follow the last one.
+  /// Starts a new sequence with the next frame.
   void Restart();
   [[nodiscard]] MotionScores Scores() const;
-  /// Of the frame added last.
+  /// Scores of the frame added last.
   [[nodiscard]] const MotionFrameScores& last() const { return last_; }
 
  private:

@@ -13,7 +13,7 @@ using torch::Tensor;
 
 namespace {
 
-/// Empty without a body.
+/// Bounding box of the body; empty without a body.
 PixelBox BodyBox(const MotionFrame& frame) {
   BODYLOOM_CHECK(frame.body.size() == size_t(frame.width) * frame.height, "motion renderer: a frame of ", frame.width,
                  "x", frame.height, " with ", frame.body.size(), " values of body mask");
@@ -28,13 +28,13 @@ PixelBox BodyBox(const MotionFrame& frame) {
   return box;
 }
 
-/// Of planes of the frame's size.
+/// Crops planes of the frame's size.
 template <class T>
 std::vector<T> PlanesWithin(const std::vector<T>& planes, int width, int height, const PixelBox& box) {
   std::vector<T> result;
   const size_t area = size_t(width) * height;
   BODYLOOM_CHECK(area > 0 && planes.size() % area == 0, "motion renderer: a frame of ", width, "x", height,
-                 " with pictures of ", planes.size(), " values, expected a multiple of its pixels");
+                 " with images of ", planes.size(), " values, expected a multiple of its pixels");
   result.reserve(planes.size() / area * box.area());
   for (size_t plane = 0; plane < planes.size(); plane += area) {
     for (int y = box.y_begin; y < box.y_end; ++y) {

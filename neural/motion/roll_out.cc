@@ -33,7 +33,7 @@ void RollOut::Restart() {
 }
 
 void RollOut::KeepWithinReach(const Tensor& body, MotionStepResult* result) const {
-  if (reach_.anywhere || reach_.pixels <= 0 || body.max().item<float>() <= 0) return;
+  if (reach_.whole_window || reach_.pixels <= 0 || body.max().item<float>() <= 0) return;
   const Tensor near = torch::max_pool2d(body, 2 * reach_.pixels + 1, 1, reach_.pixels);
   MotionState& state = result->state;
   state.image = state.image * near;
@@ -64,7 +64,7 @@ MotionStepResult RollOut::Next(const MotionFrame& frame) {
   if (past_.image.defined()) {
     for (Tensor* part : past_.Parts()) *part = Shifted(*part, frame.before_x, frame.before_y);
   } else {
-    past_ = model_->Nothing(1, frame.height, frame.width);
+    past_ = model_->InitialState(1, frame.height, frame.width);
     passes += warmup_;
   }
   MotionState past = Within(past_, box);

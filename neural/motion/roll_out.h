@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip rendered frame after frame from nothing but its motion. Internal: includes LibTorch.
+/// Renders a clip frame by frame from its motion alone. Internal: includes LibTorch.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,27 @@
 
 namespace bodyloom {
 
-/// How far clothes reach beyond the body, pixels along x or y; 0: not known.
+/// Reach of clothes beyond the body, pixels along x or y; 0: not known.
 struct Reach {
   int pixels = 0;
-  /// Even so may the person be anywhere in what the networks look at; otherwise what lies beyond reach is background:
-  /// the recurrence would keep a speck alive that it once put there.
-  bool anywhere = false;
+  /// True: the person may be anywhere in the networks' box. False: pixels beyond reach are set to background, as the
+  /// recurrence would preserve spurious ones.
+  bool whole_window = false;
 };
 
-/// Keeps the past. What does not change from one frame to the next is not computed again: the descriptor of the same
-/// motion maps, and its projection by the same surface coordinates; both exact.
+/// Keeps the recurrent state. The descriptor of unchanged motion maps and its projection by unchanged surface
+/// coordinates are reused; the results are identical.
 class RollOut {
  public:
-  /// The first frame passes `warmup_iterations` times through the network before it counts, each time with its own last
-  /// answer as its past. Throws std::invalid_argument when the networks look around the body (config.around_body) and
-  /// it is not known how far.
+  /// The first frame is rendered `warmup_iterations` times in advance, each time with its own last result as its past.
+  /// Throws std::invalid_argument when the networks see only the body's box (config.around_body) and the reach is not
+  /// known.
   RollOut(MotionModel model, int warmup_iterations, Reach reach = {});
 
-  /// The next frame, its whole window: state and foreground (the rest is for training and undefined). No gradients.
+  /// Renders the next frame's whole window: state and foreground (other fields are for training and undefined). No
+  /// gradients.
   MotionStepResult Next(const MotionFrame& frame);
-  /// The next frame is the first of another clip.
+  /// Starts another clip with the next frame.
   void Restart();
 
   [[nodiscard]] int64_t descriptors_kept() const { return descriptors_kept_; }
@@ -48,30 +49,30 @@ class RollOut {
   int64_t descriptors_kept_ = 0, projections_kept_ = 0;
 };
 
-// The last prediction of every truncated roll-out of a training run (neural/motion/rollout_plan.h), as the past of its
-// next frame. Internal: includes LibTorch.
+// Stores the last prediction of every truncated roll-out of a training run (neural/motion/rollout_plan.h) as the past
+// of its next frame.
 
 class RolloutMemory {
  public:
-  /// `nothing`: the past of a clip's first frame, 1×…; batches of `places` places with `rollouts` roll-outs each.
+  /// `nothing`: the past of a clip's first frame, 1×…; batches have `places` places with `rollouts` roll-outs each.
   RolloutMemory(MotionState nothing, int places, int rollouts);
 
-  /// As "past_labels", "past_image" and "past_normals".
+  /// Adds the state as "past_labels", "past_image" and "past_normals".
   void AddTo(Checkpoint* checkpoint);
-  /// After a checkpoint was loaded: onto the device. Throws std::invalid_argument when it holds other numbers of
-  /// roll-outs.
+  /// Moves the state to the device; call it after a checkpoint was loaded. Throws std::invalid_argument when the number
+  /// of roll-outs differs.
   void Begin();
 
-  /// The past of every place of a batch, moved to where its window is now, what its box sees of it, B×…: its roll-out's
-  /// prediction of the frame before, or, where the roll-out restarts, batch.past or nothing.
+  /// The past of every place of a batch, B×…, shifted to the current window and cropped to its box: the roll-out's
+  /// prediction of the previous frame or, for a restart, batch.past or `nothing`.
   [[nodiscard]] MotionState Before(const MotionBatch& batch) const;
-  /// Keeps the prediction of a batch's boxes, detached; outside of them is background.
+  /// Stores the prediction of a batch's boxes, detached; background outside of them.
   void Keep(const MotionBatch& batch, const MotionState& predicted);
 
  private:
   [[nodiscard]] int64_t PlaceOf(const RolloutStep& step) const { return int64_t{step.rollout} * places_; }
 
-  MotionState nothing_, last_;  ///< last_: (rollouts·B)×…, those of one turn together, whole windows
+  MotionState nothing_, last_;  ///< last_: (rollouts·B)×…, grouped by turn, whole windows
   int64_t places_, rollouts_;
 };
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The plan of truncated roll-outs: which frames a recurrent network trains on, step by step.
+/// Plans truncated roll-outs: the frames on which a recurrent network is trained in each step.
 ///
-/// A batch holds `places` places. Each belongs to `rollouts` truncated roll-outs that take turns: step s belongs to
-/// roll-out s mod `rollouts` of every place. A roll-out goes through the clip frame by frame, so that the network's
-/// prediction of one frame is at hand as the input of the next (detached: nothing is propagated back through time).
-/// After `length` frames, or where a stretch of frames ends, it restarts at a random frame: with the truth of the frame
-/// before as its past (share `from_truth`), or with nothing, as a clip begins. This follows the only published recipe
-/// for such a renderer (Kappel et al., "High-Fidelity Neural Human Motion Transfer from Monocular Video", CVPR 2021:
-/// own detached predictions, replaced by truth every 500 frames), with shorter roll-outs because clips here are
-/// shorter. Taking turns is this project's: neighbouring frames are nearly alike, and an optimizer whose every step
-/// shows it the next frame of one roll-out averages over few pictures (docs/motion_renderer.md). First roll-outs are
-/// shorter the later they come, so that not all restart at once.
+/// A batch has `places` places, each with `rollouts` truncated roll-outs in turn: step s belongs to roll-out s mod
+/// `rollouts` of every place. A roll-out traverses the clip frame by frame, with the network's prediction of one frame
+/// as input of the next (detached: no backpropagation through time). After `length` frames, or at the end of a range of
+/// frames, it restarts at a random frame: with the truth of the previous frame as its past (share `from_truth`), or
+/// without a past, as at the start of a clip. This follows the only published recipe for such a renderer (Kappel et
+/// al., "High-Fidelity Neural Human Motion Transfer from Monocular Video", CVPR 2021: own detached predictions,
+/// replaced by truth every 500 frames), with shorter roll-outs because clips here are shorter. Several roll-outs per
+/// place are this project's addition: neighbouring frames are nearly identical, and consecutive steps on a single
+/// roll-out would average over few images (docs/motion_renderer.md). The first roll-outs have staggered lengths, so
+/// that restarts do not coincide.
 ///
-/// A function of the seed alone, so that a run can go on from any step.
+/// Depends on the seed alone, so that a run can resume from any step.
 #pragma once
 
 #include <cstdint>
@@ -27,9 +27,9 @@ struct FrameRange {
 
 struct RolloutStep {
   int frame = 0;
-  int rollout = 0;          ///< of the place's roll-outs, below Options::rollouts
+  int rollout = 0;          ///< number among the place's roll-outs, below Options::rollouts
   bool restart = false;     ///< the past is not the prediction of the step before
-  bool from_truth = false;  ///< of a restart: the truth of frame − 1; otherwise nothing
+  bool from_truth = false;  ///< past of a restart: the truth of frame − 1; otherwise none
 };
 
 class RolloutPlan {
@@ -41,12 +41,12 @@ class RolloutPlan {
     double from_truth = 0.75;
     uint64_t seed = 1;
   };
-  /// Ranges of at least one frame; throws std::invalid_argument when there is none.
+  /// `ranges` must contain at least one frame; throws std::invalid_argument otherwise.
   RolloutPlan(std::vector<FrameRange> ranges, const Options& options);
 
-  /// The frames of the next step, one a place.
+  /// The frames of the next step, one per place.
   std::vector<RolloutStep> Next();
-  /// As if Next had been called `steps` times.
+  /// Equivalent to `steps` calls of Next.
   void Skip(int64_t steps);
 
  private:

@@ -22,7 +22,7 @@ namespace {
 
 using torch::Tensor;
 
-/// metrics.csv holds the scores of so many frames of each range, so that its lines compare; the summary those of all.
+/// Frames of each range scored for metrics.csv, so that its lines are comparable; the summary uses all frames.
 constexpr int kQuickFrames = 48;
 
 class MotionTrainer : public RendererTrainer {
@@ -55,8 +55,8 @@ class MotionTrainer : public RendererTrainer {
     AddJudge(discriminator_.ptr());
     optimizer_ = AddOptimizer("optimizer", *model_, options.learning_rate);
     discriminator_optimizer_ = AddOptimizer("discriminator_optimizer", *discriminator_, options.discriminator_rate);
-    memory_ =
-        std::make_unique<RolloutMemory>(model_->Nothing(1, first.height, first.width), options.batch, options.rollouts);
+    memory_ = std::make_unique<RolloutMemory>(model_->InitialState(1, first.height, first.width), options.batch,
+                                              options.rollouts);
     memory_->AddTo(&checkpoint_);
     checkpoint_.Add("best", &best_);
   }
@@ -81,11 +81,11 @@ class MotionTrainer : public RendererTrainer {
 
   void Validate(int done, bool last) override {
     std::vector<MotionPreview> previews;
-    // LPIPS and tLPIPS take their time: at the end alone.
+    // LPIPS and tLPIPS are slow: only at the end.
     const auto lpips =
         last ? std::make_shared<const Lpips>(LpipsFrom(options_.alexnet, options_.lpips_heads)) : nullptr;
     MotionScorer quick(config_, {nullptr, options_.ssim}), all(config_, {lpips, options_.ssim});
-    RollOut roll(Shown(), options_.warmup_iterations, {options_.reach, /*anywhere=*/true});
+    RollOut roll(Shown(), options_.warmup_iterations, {options_.reach, /*whole_window=*/true});
     for (const FrameRange& range : options_.validation) {
       roll.Restart();
       quick.Restart();
@@ -130,7 +130,7 @@ class MotionTrainer : public RendererTrainer {
   }
 
  private:
-  /// What is validated and kept for inference.
+  /// The model that is validated and kept for inference.
   [[nodiscard]] MotionModel& Shown() { return average_ ? average_ : model_; }
 
   [[nodiscard]] double ValidationPsnr() const override {
@@ -142,11 +142,11 @@ class MotionTrainer : public RendererTrainer {
     const MotionTruth& truth = batch.truth;
     const MotionStepResult result = model_(batch.input, memory_->Before(batch));
     const MotionState& state = result.state;
-    // Where the person is, is the classes' affair: colour is judged where the person truly is. Judged as it is shown,
-    // it would turn dark where the person might be and mostly is not.
+    // Colour losses use the true foreground, as the outline is learned by the classes. With the predicted foreground,
+    // colours would turn dark where the person is rarely present.
     const Tensor image = has_labels_ && config_.shape ? truth.foreground * result.colour : state.image;
-    const auto condition = [&](const Tensor& picture) {
-      return has_labels_ ? torch::cat({truth.labels, picture}, 1) : picture;
+    const auto condition = [&](const Tensor& colours) {
+      return has_labels_ ? torch::cat({truth.labels, colours}, 1) : colours;
     };
     if (options_.gan_weight > 0 && !LearnToJudge(DiscriminatorLoss({discriminator_(condition(truth.image))},
                                                                    {discriminator_(condition(image.detach()))}),
@@ -166,7 +166,7 @@ class MotionTrainer : public RendererTrainer {
     }
     if (options_.perceptual_weight > 0) {
       const SeenPair seen = See(image, truth.image);
-      Add("perceptual", options_.perceptual_weight, PerceptualLoss(seen.picture, seen.truth), &total);
+      Add("perceptual", options_.perceptual_weight, PerceptualLoss(seen.image, seen.truth), &total);
     }
     if (options_.gan_weight > 0) {
       OnlyJudge();
@@ -183,12 +183,12 @@ class MotionTrainer : public RendererTrainer {
   const MotionConfig& config_;
   bool has_labels_ = false, has_normals_ = false;
   MotionModel model_{nullptr};
-  MotionModel average_{nullptr};  ///< of model_'s weights; empty: not wanted
+  MotionModel average_{nullptr};  ///< average of model_'s weights; empty: disabled
   PatchDiscriminator discriminator_{nullptr};
   Adam *optimizer_ = nullptr, *discriminator_optimizer_ = nullptr;
   std::unique_ptr<RolloutMemory> memory_;
-  MotionScores scores_, all_scores_;  ///< of the last validation's first frames of each range, and of all of them
-  Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< least L1 of a validation, and how many came since
+  MotionScores scores_, all_scores_;  ///< of the last validation: first frames of each range, and all frames
+  Tensor best_ = torch::tensor({1e9, 0.0}, torch::kDouble);  ///< minimum L1 of the validations, and validations since
   std::unique_ptr<MotionBatches> batches_;
 };
 

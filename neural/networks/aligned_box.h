@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Boxes that networks with strides can look at instead of a whole window.
+/// Boxes aligned to the strides of networks, for inputs cropped from a window.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,17 @@
 
 namespace bodyloom {
 
-/// Sides below which the deepest level of networks with a stride of `multiple` would have nothing to normalise over.
-int LeastBoxSide(int multiple);
+/// Minimum side for which the deepest level of networks with a stride of `multiple` has enough pixels for
+/// normalisation.
+int MinBoxSide(int multiple);
 
-/// The smallest box that holds `box` (as far as it lies in the window), begins and ends at multiples of `multiple` and
-/// has sides of at least `least_width` × `least_height` (or the window's): so a pixel keeps its place among the
-/// strides, wherever the box lies. `window`: from (0, 0), its sides multiples of `multiple`. An empty box counts as the
-/// window's middle.
-PixelBox AlignedBox(const PixelBox& box, const PixelBox& window, int multiple, int least_width, int least_height);
+/// The minimum box that contains `box` (clipped to the window), begins and ends at multiples of `multiple` and has
+/// sides of at least `min_width` × `min_height` (or the window's): a pixel's phase with respect to the strides is the
+/// same in all boxes. `window`: from (0, 0), its sides multiples of `multiple`. An empty box is taken as the window's
+/// centre.
+PixelBox AlignedBox(const PixelBox& box, const PixelBox& window, int multiple, int min_width, int min_height);
 
-/// One for each of `boxes`, all of one size: the largest of theirs, at least LeastBoxSide a side.
+/// Aligned boxes of one size for all `boxes`: the maximum of their sizes, with sides of at least MinBoxSide.
 std::vector<PixelBox> AlignedBoxes(std::vector<PixelBox> boxes, const PixelBox& window, int multiple);
 
 }  // namespace bodyloom

@@ -15,7 +15,7 @@ namespace {
 thread_local int64_t multiply_adds = 0;
 thread_local int convolutions_deep = 0;
 
-/// Size of a convolution's output along a side.
+/// Size of a convolution's output along one axis.
 int64_t OutputSize(int64_t in, int64_t kernel, int64_t stride, int64_t padding, int64_t dilation) {
   return (in + 2 * padding - dilation * (kernel - 1) - 1) / stride + 1;
 }
@@ -26,7 +26,7 @@ int64_t OfConvolution(c10::ArrayRef<const c10::IValue> inputs) {
   const at::Tensor& weight = inputs[1].toTensor();
   const int64_t dims = weight.dim() - 2;
   const bool batched = input.dim() == weight.dim();
-  const int64_t per_position = weight.numel() / weight.size(0);  // inputs (outputs, if transposed) a group, times taps
+  const int64_t per_position = weight.numel() / weight.size(0);  // inputs (outputs, if transposed) per group × taps
   int64_t positions = batched ? std::max<int64_t>(1, input.size(0)) : 1;
   if (inputs[6].toBool()) {
     for (int64_t i = -1 - dims; i < 0; ++i) positions *= input.size(i);
@@ -45,7 +45,7 @@ bool Is(const at::RecordFunction& function, const char* name) { return std::strc
 
 std::unique_ptr<at::ObserverContext> Enter(const at::RecordFunction& function) {
   const c10::ArrayRef<const c10::IValue> inputs = function.inputs();
-  // Products of matrices, unless they are how a convolution is computed.
+  // Matrix products, unless they are part of a convolution.
   const int first = Is(function, "aten::addmm") ? 1 : Is(function, "aten::mm") || Is(function, "aten::bmm") ? 0 : -1;
   if (Is(function, "aten::convolution")) {
     if (convolutions_deep++ == 0) multiply_adds += OfConvolution(inputs);
@@ -59,7 +59,7 @@ void Leave(const at::RecordFunction& function, at::ObserverContext*) {
   if (Is(function, "aten::convolution")) --convolutions_deep;
 }
 
-/// Watches the operators of this thread while it lives.
+/// Observes the operators of this thread during its lifetime.
 class Observation {
  public:
   Observation()

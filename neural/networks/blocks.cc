@@ -61,7 +61,7 @@ DeconvBlockImpl::DeconvBlockImpl(int ic, int mc, int oc, NormOrder norm_order) :
   conv2 = register_module("conv2", MakeConv(mc, mc, 3, 1, 1, bias));
   conv3 = register_module("conv3", MakeConv(mc, mc, 3, 1, 1, bias));
   up = register_module("up", nn::ConvTranspose2d(nn::ConvTranspose2dOptions(mc, oc, 4).stride(2).padding(1)));
-  nn::init::normal_(up->weight, 0, KaimingStd(4.0 * mc));  // a quarter of the 16 taps meets each output pixel
+  nn::init::normal_(up->weight, 0, KaimingStd(4.0 * mc));  // a quarter of the 16 taps contributes to each output pixel
   nn::init::zeros_(up->bias);
 }
 
@@ -77,8 +77,8 @@ namespace {
 using torch::Tensor;
 using torch::indexing::Slice;
 
-/// Rows (or columns) of the kernel that outputs of one parity see, for inputs from `first` (relative to half the
-/// output's place) upwards.
+/// Rows (or columns) of the kernel used by outputs of one parity, for inputs from `first` (relative to half the
+/// output's index) upwards.
 struct Taps {
   int first = 0;
   std::vector<int64_t> kernel;
@@ -108,7 +108,7 @@ Tensor TransposedConv(const Tensor& x, const Tensor& weight, const Tensor& bias,
   const Tensor padded = torch::constant_pad_nd(x, {1, 1, 1, 1});
   std::array<Taps, 2> taps = {TapsOf(0, kernel, padding), TapsOf(1, kernel, padding)};
   const auto share = [](const Tensor& all, int64_t dimension, const Taps& of) {
-    // Every other row, backwards.
+    // Every other row, in reverse order.
     std::vector<Tensor> rows;
     for (const int64_t k : of.kernel) rows.push_back(all.select(dimension, k));
     return torch::stack(rows, dimension);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The two blocks that the networks of the motion-dependent renderer are made of. Internal: includes LibTorch.
+/// The two building blocks of the motion-dependent renderer's networks. Internal: includes LibTorch.
 ///
 /// Conv(ic, oc, kernel, stride, padding), Deconv likewise; LReLU has slope 0.2, IN is instance normalisation without
 /// learned scale and shift (epsilon 1e-5):
@@ -10,8 +10,9 @@
 /// High-Fidelity Rendering of Dynamic Humans from a Single Camera", CVPR 2022, Fig. 11, which leaves the order inside
 /// "LReLU+IN" open.
 ///
-/// Convolutions whose bias the normalisation would remove again (norm first) have none. Weights start as
-/// N(0, 2 / (1.04 fan_in)) (Kaiming for the slope 0.2; fan_in of a Deconv with stride 2: mc·4·4/4), biases at 0.
+/// Convolutions directly followed by a normalisation, which would remove their bias, have none (norm first). Weights
+/// are initialised as N(0, 2 / (1.04 fan_in)) (Kaiming for the slope 0.2; fan_in of a Deconv with stride 2: mc·4·4/4),
+/// biases at 0.
 #pragma once
 
 #include <torch/torch.h>
@@ -22,20 +23,19 @@ enum class NormOrder { kNormFirst, kActivationFirst };
 
 constexpr double kLeakySlope = 0.2;
 
-/// LReLU; writes over x, which must be what a convolution or norm just made and nobody else reads.
+/// LReLU, in place: x must be the fresh output of a convolution or norm that is not used elsewhere.
 torch::Tensor LeakyRelu(torch::Tensor x);
 
-/// IN: each channel of each image to mean 0 and variance 1 (+ 1e-5).
+/// IN: normalises each channel of each image to mean 0 and variance 1 (+ 1e-5).
 torch::Tensor InstanceNorm(const torch::Tensor& x);
 
-/// IN then LReLU, or LReLU then IN. May write over x, as above.
+/// IN then LReLU, or LReLU then IN. May work in place, as above.
 torch::Tensor NormAndActivation(const torch::Tensor& x, NormOrder order);
 
 /// IN then ReLU.
 torch::Tensor NormAndRelu(const torch::Tensor& x);
 
-/// A square convolution with Kaiming weights (fan_in, slope 0.2) and a bias of zero, or
-/// none.
+/// A square convolution with Kaiming weights (fan_in, slope 0.2) and a bias of zero, or none.
 torch::nn::Conv2d MakeConv(int from, int to, int kernel, int stride, int padding, bool bias);
 
 /// B×ic×H×W → B×oc×H/2×W/2; H and W even and at least 4.
@@ -59,18 +59,17 @@ struct DeconvBlockImpl : torch::nn::Module {
 };
 TORCH_MODULE(DeconvBlock);
 
-// Transposed convolution of stride 2 that doubles an image's sides, as four ordinary convolutions. Internal: includes
-// LibTorch.
+// Transposed convolution of stride 2 that doubles an image's sides, as four ordinary convolutions.
 //
-// With padding p, output pixel o takes kernel row k of input pixel i where o = 2i − p + k: even and odd output rows
-// see different rows of the kernel, so each of the four parities of (row, column) is an ordinary convolution with its
-// share of the kernel, and the result is the four interleaved. Same sums, same number of multiply–adds; but
-// LibTorch 1.13 has no fast transposed convolution for the CPU, and multiplies matrices with whatever BLAS there is.
-// Forwards and backwards it is 1.7 to 4.4 times as fast this way (docs/networks.md).
+// With padding p, output pixel o uses kernel row k of input pixel i where o = 2i − p + k: even and odd output rows use
+// different rows of the kernel, so each of the four parities of (row, column) is an ordinary convolution with its part
+// of the kernel, and the result is the four interleaved. The sums and multiply–adds are the same, but LibTorch 1.13 has
+// no fast transposed convolution for the CPU and uses general matrix products of the installed BLAS. This way both
+// passes are 1.7 to 4.4 times faster (docs/networks.md).
 
-/// What torch::conv_transpose2d with stride 2 makes of B×ic×H×W: weight is ic×oc×k×k, bias oc or undefined. Kernel 4
-/// with padding 1, or kernel 3 with padding 1 and output padding 1, so that the result is B×oc×2H×2W; throws
-/// std::invalid_argument for others. Not on the CPU it is that function itself.
+/// Equivalent to torch::conv_transpose2d with stride 2 for B×ic×H×W: weight is ic×oc×k×k, bias oc or undefined. Kernel
+/// 4 with padding 1, or kernel 3 with padding 1 and output padding 1, so that the result is B×oc×2H×2W; throws
+/// std::invalid_argument for others. On other devices than the CPU it calls that function.
 torch::Tensor TransposedConv(const torch::Tensor& x, const torch::Tensor& weight, const torch::Tensor& bias,
                              int padding, int output_padding);
 

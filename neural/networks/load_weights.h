@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Weights from plain arrays into a module, and back. Internal: includes LibTorch.
+/// Copies weights from plain arrays into a module, and back. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -16,18 +16,18 @@ namespace bodyloom {
 using WeightName = std::function<std::string(const std::string& parameter)>;
 
 struct LoadWeightsOptions {
-  WeightName name_in_file;     ///< the same name when not set
-  bool allow_missing = false;  ///< leave parameters that the file does not have as they are
+  WeightName name_in_file;     ///< default: the same name
+  bool allow_missing = false;  ///< leave parameters missing in the file unchanged
 };
 
 struct LoadWeightsReport {
-  std::vector<std::string> missing;  ///< the module's, under the file's name for them
-  std::vector<std::string> unused;   ///< the file's
+  std::vector<std::string> missing;  ///< of the module, under the file's names
+  std::vector<std::string> unused;   ///< of the file
 };
 
-/// Copies every parameter and buffer of `module` from `weights`. All or nothing: a fault leaves the module as it was.
-/// Throws std::runtime_error "source: tensor NAME: what was found, expected what" for a shape that differs, a value
-/// that is not finite, a number of values other than the shape's product, and (unless allowed) missing tensors.
+/// Copies every parameter and buffer of `module` from `weights`. On failure the module is unchanged. Throws
+/// std::runtime_error "source: tensor NAME: what was found, expected what" for a shape that differs, a value that is
+/// not finite, a number of values other than the shape's product, and (unless allowed) missing tensors.
 LoadWeightsReport LoadWeights(const NamedWeights& weights, const std::string& source, torch::nn::Module* module,
                               const LoadWeightsOptions& options = {});
 

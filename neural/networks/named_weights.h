@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Weights of a network as plain arrays: what readers of weight files hand to neural/.
+/// Weights of a network as plain arrays, as provided to neural/ by readers of weight files.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ struct NamedArray {
   std::vector<float> values;  ///< in C order; as many as the product of the shape
 };
 
-/// By the name that the file gives, such as "features.0.weight".
+/// By the name in the file, such as "features.0.weight".
 using NamedWeights = std::map<std::string, NamedArray>;
 
-/// Weights and the file they are from, which messages name.
+/// Weights and their file, for messages.
 struct WeightsFrom {
   NamedWeights weights;
   std::string source;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Discriminators that judge overlapping patches. Internal: includes LibTorch.
+/// Discriminators of overlapping patches. Internal: includes LibTorch.
 ///
 /// One scale, PatchGAN of n_layers = n and ndf channels, all kernels 4×4:
 ///   Conv(in, ndf, stride 2) LReLU; n−1 times Conv(c, min(2c, 8 ndf), stride 2) IN LReLU;
 ///   Conv(c, min(2c, 8 ndf), stride 1) IN LReLU; Conv(c, 1, stride 1)
-/// n = 3 sees 70×70 pixels (16, 34, 70, 142 for n = 1 … 4). Sources: Isola et al., CVPR 2017 (padding 1); Wang et al.,
-/// CVPR 2018 (several scales; padding 2, and 3×3 averages of stride 2 between the scales, padded pixels not counted).
-/// Weights start as N(0, 0.02²), biases at 0; convolutions before IN have no bias, which IN would remove.
+/// The receptive field for n = 3 is 70×70 pixels (16, 34, 70, 142 for n = 1 … 4). Sources: Isola et al., CVPR 2017
+/// (padding 1); Wang et al., CVPR 2018 (several scales; padding 2, and 3×3 averages of stride 2 between the scales,
+/// padded pixels not counted). Weights start as N(0, 0.02²), biases at 0; convolutions before IN have no bias, which IN
+/// would remove.
 /// All return logits (no sigmoid): see neural/losses/gan_losses.h.
 #pragma once
 
@@ -20,7 +21,7 @@ struct PatchDiscriminatorOptions {
   int in = 0;        ///< channels of condition and image together
   int ndf = 64;      ///< channels of the first layer
   int n_layers = 3;  ///< layers of stride 2
-  int padding = 1;   ///< 1 as Isola et al., 2 as Wang et al.
+  int padding = 1;   ///< 1 as in Isola et al., 2 as in Wang et al.
 };
 
 struct PatchDiscriminatorImpl : torch::nn::Module {

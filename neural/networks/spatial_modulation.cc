@@ -54,7 +54,7 @@ Tensor ModulatedBlockImpl::forward(const Tensor& x, const std::vector<Tensor>& m
 namespace {
 
 constexpr double kTinyNorm = 1e-12;
-constexpr int kFirstIterations = 8;  ///< so that a network starts near its true scale
+constexpr int kFirstIterations = 8;  ///< so that the initial scale is nearly correct
 
 Tensor Normalized(const Tensor& x) { return x / (x.norm() + kTinyNorm); }
 

@@ -38,7 +38,7 @@ Tensor PullPush(const Tensor& x, const Tensor& mask, int levels) {
   if (levels <= 0 || height % 2 != 0 || width % 2 != 0) return known;
   const Tensor share = torch::avg_pool2d(mask, 2);
   const Tensor coarse_mask = (share > 0).to(mask.scalar_type());
-  // Nothing known: 0/1 instead of 0/0.
+  // Without known pixels: 0/1 instead of 0/0.
   const Tensor coarse = torch::avg_pool2d(known, 2) / (share + (1 - coarse_mask));
   const Tensor filled = PullPush(coarse, coarse_mask, levels - 1);
   return known + (1 - mask) * torch::upsample_bilinear2d(filled, {height, width}, /*align_corners=*/false);

@@ -14,7 +14,7 @@ namespace bodyloom {
 
 enum class FeatureLayerKind { kConv, kRelu, kPool };
 
-/// A layer of torchvision's `features`; name is that of FeatureLayer, empty for pools.
+/// A layer of torchvision's `features`, named as in FeatureLayer; empty name for pools.
 struct FeatureLayerPlan {
   FeatureLayerKind kind;
   std::string name;
@@ -59,8 +59,8 @@ const std::vector<FeatureLayerPlan>& PlanOf(FeatureTrunk trunk) {
   return trunk == FeatureTrunk::kVgg16 ? kVgg16 : trunk == FeatureTrunk::kVgg19 ? kVgg19 : kAlexNet;
 }
 
-/// out×in×k×k with orthonormal rows (or columns) times √2, keeping the size of what passes a ReLU: A random and
-/// A Aᵀ = L Lᵀ give L⁻¹ A (a third of the time of a QR decomposition, and A is well conditioned).
+/// out×in×k×k with orthonormal rows (or columns) times √2, preserving the magnitude of activations through a ReLU: A
+/// random and A Aᵀ = L Lᵀ give L⁻¹ A (a third of the time of a QR decomposition, and A is well conditioned).
 torch::Tensor OrthogonalWeight(torch::IntArrayRef shape, torch::Generator generator) {
   const int64_t rows = shape[0], columns = c10::multiply_integers(shape) / rows;
   const bool wide = columns >= rows;
@@ -162,7 +162,7 @@ std::vector<torch::Tensor> FeatureNetworkImpl::forward(const torch::Tensor& imag
     } else if (layer.plan.kind == FeatureLayerKind::kPool) {
       x = torch::max_pool2d(x, layer.plan.kernel, layer.plan.stride);
     } else if (tap > 0 && options.taps[tap - 1] == i - 1) {
-      x = torch::relu(x);  // the value before the ReLU was requested
+      x = torch::relu(x);  // the value before the ReLU is a tap
     } else {
       x = torch::relu_(x);
     }

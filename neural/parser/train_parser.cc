@@ -8,9 +8,9 @@
 #include "neural/base/device.h"
 #include "neural/base/runtime.h"
 #include "neural/metrics/pixel_metrics.h"
-#include "neural/networks/picture_unet_module.h"
-#include "neural/parser/picture_crops.h"
-#include "neural/parser/picture_trainer.h"
+#include "neural/networks/image_unet_module.h"
+#include "neural/parser/image_crops.h"
+#include "neural/parser/image_trainer.h"
 
 namespace bodyloom {
 namespace {
@@ -19,36 +19,36 @@ using torch::Tensor;
 
 constexpr int kParserIn = kParserPlanes.in;
 constexpr const char* kParserTraining = "parser training";
-constexpr int kMeeting = 3;  ///< pixels between two that show different classes
+constexpr int kMeeting = 3;  ///< distance between two pixels of different classes
 
-/// Another class is near, to the right or below.
-bool ClassesMeet(const PackedPicture& picture, size_t pixel) {
-  const auto width = static_cast<size_t>(picture.width);
-  const uint8_t own = picture.truth[pixel];
-  const auto other = [&](size_t at) { return picture.truth[at] != 0 && picture.truth[at] != own; };
+/// True if another class is near, to the right or below.
+bool ClassesMeet(const PackedImage& image, size_t pixel) {
+  const auto width = static_cast<size_t>(image.width);
+  const uint8_t own = image.truth[pixel];
+  const auto other = [&](size_t at) { return image.truth[at] != 0 && image.truth[at] != own; };
   return own != 0 && ((pixel % width + kMeeting < width && other(pixel + kMeeting)) ||
-                      (pixel + kMeeting * width < picture.pixels() && other(pixel + kMeeting * width)));
+                      (pixel + kMeeting * width < image.pixels() && other(pixel + kMeeting * width)));
 }
 
-PictureUnetModule SeededParser(const TrainParserOptions& options) {
+ImageUnetModule SeededParser(const TrainParserOptions& options) {
   torch::manual_seed(options.seed);
-  PictureUnetModule module(kParserPlanes);
+  ImageUnetModule module(kParserPlanes);
   module->to(NeuralDevice());
   return module;
 }
 
-/// Labels of B×H×W bytes as classes from 0; −1 where there is none, or the mask ends.
+/// Converts labels of B×H×W bytes to classes from 0; −1 without a label or outside the mask.
 Tensor ClassesOf(const Tensor& labels, const Tensor& planes) {
   const Tensor masked = planes.select(1, PersonPlane::kAlpha) > 0.5;
   return torch::where(masked, labels.to(torch::kLong) - 1, -torch::ones_like(labels, torch::kLong));
 }
 
-class ParserTrainer : public PictureTrainer {
+class ParserTrainer : public ImageTrainer {
  public:
-  ParserTrainer(const std::vector<PackedPicture>& train, const std::vector<PackedPicture>& validation,
-                const TrainParserOptions& options, PictureUnetModule module, PictureUnetModule average)
-      : PictureTrainer("clothes parser", options, train, {kParserIn, ParserTruth::kCount, 0, 0, 1, 1, ClassesMeet},
-                       module.ptr(), average.ptr()),
+  ParserTrainer(const std::vector<PackedImage>& train, const std::vector<PackedImage>& validation,
+                const TrainParserOptions& options, ImageUnetModule module, ImageUnetModule average)
+      : ImageTrainer("clothes parser", options, train, {kParserIn, ParserTruth::kCount, 0, 0, 1, 1, ClassesMeet},
+                     module.ptr(), average.ptr()),
         validation_(validation),
         unpacked_(kParserIn),
         module_(std::move(module)),
@@ -59,7 +59,7 @@ class ParserTrainer : public PictureTrainer {
     const TrainingOutcome outcome = Train();
     result.summary = summary_;
     static_cast<TrainingOutcome&>(result.summary) = outcome;
-    result.weights.network = ExportPictureUnet(average_);
+    result.weights.network = ExportImageUnet(average_);
     return result;
   }
 
@@ -68,15 +68,15 @@ class ParserTrainer : public PictureTrainer {
   void Validate(int, bool) override {
     const torch::NoGradGuard no_grad;
     ClassOverlap parsed(1 + kParserClasses), of_body(1 + kParserClasses);
-    for (const PackedPicture& picture : validation_) {
-      const auto [planes, truth] = unpacked_(BytesOf(picture, kParserIn, ParserTruth::kCount));
+    for (const PackedImage& image : validation_) {
+      const auto [planes, truth] = unpacked_(BytesOf(image, kParserIn, ParserTruth::kCount));
       const std::vector<uint8_t> predicted = HostValues<uint8_t>(average_(planes).argmax(1));
       const std::vector<float> classes = HostValues<float>(ClassesOf(truth.select(1, ParserTruth::kLabel), planes));
       for (size_t i = 0; i < classes.size(); ++i) {
         if (classes[i] < 0) continue;
         const size_t true_label = 1 + static_cast<size_t>(classes[i]);
         parsed.Add(size_t{1} + predicted[i], true_label);
-        of_body.Add(size_t{picture.truth[ParserTruth::kBodyLabel * picture.pixels() + i]}, true_label);
+        of_body.Add(size_t{image.truth[ParserTruth::kBodyLabel * image.pixels() + i]}, true_label);
       }
     }
     summary_.mean_iou = parsed.MeanIou(true), summary_.body_mean_iou = of_body.MeanIou(true);
@@ -103,22 +103,22 @@ class ParserTrainer : public PictureTrainer {
     return -(logs * counted).sum() / counted.sum().clamp_min(1);
   }
 
-  const std::vector<PackedPicture>& validation_;
+  const std::vector<PackedImage>& validation_;
   const PlaneUnpacker unpacked_;
-  PictureUnetModule module_, average_;
+  ImageUnetModule module_, average_;
   TrainParserSummary summary_;
 };
 
 }  // namespace
 
-TrainParserResult TrainParser(const std::vector<PackedPicture>& train, const std::vector<PackedPicture>& validation,
+TrainParserResult TrainParser(const std::vector<PackedImage>& train, const std::vector<PackedImage>& validation,
                               const TrainParserOptions& options) {
   std::string why;
-  BODYLOOM_CHECK(IsValidPictureTraining(options, &why), kParserTraining, ": ", why);
-  BODYLOOM_CHECK(!train.empty(), kParserTraining, ": no picture to train on");
-  for (const PackedPicture& picture : train) CheckPicture(picture, kParserIn, ParserTruth::kCount, kParserTraining);
-  for (const PackedPicture& picture : validation) {
-    CheckPicture(picture, kParserIn, ParserTruth::kCount, kParserTraining);
+  BODYLOOM_CHECK(IsValidImageTraining(options, &why), kParserTraining, ": ", why);
+  BODYLOOM_CHECK(!train.empty(), kParserTraining, ": no image to train on");
+  for (const PackedImage& image : train) CheckImage(image, kParserIn, ParserTruth::kCount, kParserTraining);
+  for (const PackedImage& image : validation) {
+    CheckImage(image, kParserIn, ParserTruth::kCount, kParserTraining);
   }
   StartNeuralRuntime(options.num_threads);
   UseNeuralDevice(options.device);

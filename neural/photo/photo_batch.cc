@@ -8,7 +8,7 @@
 namespace bodyloom {
 namespace {
 
-/// The part of `box` inside `window`, in its coordinates; width 0 when there is none.
+/// The part of `box` inside `window`, in coordinates of the window; width 0 if there is none.
 PhotoWindow Inside(const PhotoWindow& box, const PhotoWindow& window) {
   const int left = std::max(box.x, window.x), right = std::min(box.x + box.width, window.x + window.width);
   const int top = std::max(box.y, window.y), bottom = std::min(box.y + box.height, window.y + window.height);
@@ -38,7 +38,7 @@ PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> 
   batch.source = ToTensors(from);
   batch.target = ToTensors(to);
   batch.pose = PoseOf(targets, windows);
-  batch.truth = PictureTensorsOf(targets, windows);
+  batch.truth = ImageTensorsOf(targets, windows);
   for (size_t i = 0; i < targets.size() && !back_of_head.empty(); ++i) {
     batch.faces.push_back(Inside(FaceBox(targets[i], back_of_head), windows[i]));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The pictures of one training step. Internal: includes LibTorch.
+/// Batch of one training step. Internal: includes LibTorch.
 #pragma once
 
 #include <span>
@@ -15,13 +15,13 @@ namespace bodyloom {
 struct PhotoBatch {
   TextureTensors source, target;   ///< T_s and T_t
   PoseTensors pose;                ///< P_t
-  PictureTensors truth;            ///< I_t
-  std::vector<PhotoWindow> faces;  ///< in the windows of truth; width 0 where none looks at the camera; or empty
+  ImageTensors truth;              ///< I_t
+  std::vector<PhotoWindow> faces;  ///< in the windows of truth; width 0 if no face is turned to the camera; or empty
 };
 
-/// Windows: neural/photo/photo_window.h, the largest one's sides for all. `guess`: what the source's texture is filled
-/// with where nothing is seen; null: with nothing. `back_of_head` (render/texture/complete/body_part_map.h): for the
-/// faces; empty: nobody looks at them.
+/// Creates a batch. Windows: neural/photo/photo_window.h, all with the size of the largest. `guess`: fills unseen
+/// texels of the source's texture; null: not filled. `back_of_head` (render/texture/complete/body_part_map.h): to find
+/// faces; empty: faces are not needed.
 PhotoBatch MakePhotoBatch(const PhotoSource& source, std::span<const PhotoPair> pairs, int reach, int smallest_side,
                           const TexelNeighbours* guess = nullptr, std::span<const uint8_t> back_of_head = {});
 

@@ -21,16 +21,16 @@ Tensor TextureLoss(const Tensor& features, const TextureTensors& source, const T
 
 Tensor FaceLoss(SphereFace network, const Tensor& image, const Tensor& truth, const std::vector<PhotoWindow>& faces) {
   BODYLOOM_CHECK(image.sizes() == truth.sizes() && static_cast<int64_t>(faces.size()) == image.size(0),
-                 "face loss: pictures of shapes ", image.sizes(), " and ", truth.sizes(), " with ", faces.size(),
+                 "face loss: images of shapes ", image.sizes(), " and ", truth.sizes(), " with ", faces.size(),
                  " faces");
   std::vector<Tensor> made, real;
   for (size_t b = 0; b < faces.size(); ++b) {
     const PhotoWindow& box = faces[b];
     if (box.width < kSmallestFace || box.height < kSmallestFace) continue;
-    const auto face = [&](const Tensor& picture) {
+    const auto face = [&](const Tensor& images) {
       const auto at = static_cast<int64_t>(b);
       const Tensor cut =
-          picture.slice(0, at, at + 1).slice(2, box.y, box.y + box.height).slice(3, box.x, box.x + box.width);
+          images.slice(0, at, at + 1).slice(2, box.y, box.y + box.height).slice(3, box.x, box.x + box.width);
       return torch::upsample_bilinear2d(cut, {kFaceHeight, kFaceWidth}, /*align_corners=*/false);
     };
     made.push_back(face(image));

@@ -10,10 +10,10 @@ using torch::Tensor;
 
 namespace {
 
-constexpr int kFillLevels = 5;  ///< outwards by some 32 pixels
+constexpr int kFillLevels = 5;  ///< reaches about 32 pixels outwards
 
-/// The first three outputs begin as the input's colours, the others near 0. `colours` is the first channel of the input
-/// among those that the convolution sees.
+/// Initialises the first three outputs to the input's colours, the others near 0. `colours`: index of the first of
+/// these among the convolution's inputs.
 void StartFromColours(torch::nn::Conv2dImpl* last, int colours) {
   const torch::NoGradGuard no_grad;
   torch::nn::init::normal_(last->weight, 0, 0.02);
@@ -21,8 +21,8 @@ void StartFromColours(torch::nn::Conv2dImpl* last, int colours) {
   for (int c = 0; c < 3; ++c) last->weight[c][colours + c][centre][centre] += 1;
 }
 
-/// Alpha begins as the body, a pixel or two wider and soft, as clothes are: 4 inside, −2 outside, and in between the
-/// share of the kernel that sees the body.
+/// Initialises alpha to the body widened by a pixel or two and softened, for clothes: 4 inside, −2 outside, and in
+/// between by the share of the kernel on the body.
 void StartFromBody(torch::nn::Conv2dImpl* last, int body) {
   const torch::NoGradGuard no_grad;
   last->weight[3][body] += 6.0 / static_cast<double>(last->weight[3][body].numel());
@@ -65,7 +65,7 @@ Tensor PhotoModelImpl::Project(const Tensor& features, const PoseTensors& pose) 
 
 PhotoResult PhotoModelImpl::Render(const Tensor& projected, const Tensor& body) {
   Tensor passed;
-  // The colours come first: StartFromColours().
+  // Colours must be first, for StartFromColours().
   if (config.profile.render_passes_input) {
     passed = torch::cat({PullPush(projected.slice(1, 0, 3), body, kFillLevels), projected, body}, 1);
   }

@@ -4,17 +4,17 @@
 ///   F_s = f(T_s + G_s, M_s)      FeatureNet on the partial texture's colours, guesses at those of the other texels
 ///                                (render/texture/complete/partial_texture.h; the paper has none) and visibility, in
 ///                                UV; d channels
-///   R   = r(F_s, P_t)            bilinear look-up at the target pose's surface coordinates, 0 off the body
-///   c, α = tanh, sigmoid g(R)    RenderNet;  I = α (c + 1)/2. Where its last convolution sees R too
-///                                (PhotoProfile::render_passes_input), it also sees R's colours filled outwards from
-///                                the body (neural/networks/uv_sampler.h), which clothes beyond the body begin with,
+///   R   = r(F_s, P_t)            bilinear sampling at the target pose's surface coordinates, 0 off the body
+///   c, α = tanh, sigmoid g(R)    RenderNet;  I = α (c + 1)/2. If its last convolution sees R
+///                                (PhotoProfile::render_passes_input), it also sees R's colours extended outwards from
+///                                the body (neural/networks/uv_sampler.h), as initial colours of clothes beyond it,
 ///                                and the body's silhouette
 /// Source: Sarkar et al., "Neural Re-Rendering of Humans from a Single Image", ECCV 2020, Sections 3.2–3.4. The paper's
 /// RenderNet has three outputs on its photographs' plain background; the fourth is this project's
 /// (docs/photo_renderer.md).
 ///
-/// FeatureNet's last convolution starts as N(0, 0.02²), plus what copies the input's colours to the first three
-/// features: visible texels need not be learned.
+/// FeatureNet's last convolution is initialised as N(0, 0.02²) plus an identity that copies the input's colours to the
+/// first three features, so that visible texels need not be learned.
 ///
 /// Variants (neural/photo/photo_config.h): without FeatureNet F_s is T_s itself; with kWarpCond R has the target's
 /// coordinates and parts (u, v, part/24, 0 off the body) beside it.
@@ -38,9 +38,9 @@ struct PhotoResult {
 struct PhotoModelImpl : torch::nn::Module {
   explicit PhotoModelImpl(const PhotoConfig& config);
 
-  /// F_s. Its first three channels are colours 2c − 1, as T_s'.
+  /// Computes F_s. Its first three channels are colours 2c − 1, as in T_s.
   torch::Tensor Complete(const TextureTensors& texture);
-  /// R of F_s.
+  /// Computes R from F_s.
   [[nodiscard]] torch::Tensor Project(const torch::Tensor& features, const PoseTensors& pose) const;
   /// `body`: PoseTensors::body of the same windows.
   PhotoResult Render(const torch::Tensor& projected, const torch::Tensor& body);
@@ -52,7 +52,7 @@ struct PhotoModelImpl : torch::nn::Module {
 };
 TORCH_MODULE(PhotoModel);
 
-/// The discriminators that a run trains against: they see R beside the picture.
+/// The discriminators of the training; their input is the image with R.
 MultiScaleDiscriminator PhotoDiscriminator(const PhotoConfig& config);
 
 }  // namespace bodyloom

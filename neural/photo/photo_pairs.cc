@@ -10,7 +10,7 @@
 namespace bodyloom {
 namespace {
 
-/// 0 … count − 1.
+/// Uniform number in 0 … count − 1.
 int Draw(uint64_t hash, size_t count) {
   return std::min(static_cast<int>(UniformOf(hash) * static_cast<double>(count)), static_cast<int>(count) - 1);
 }

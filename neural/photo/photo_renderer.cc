@@ -22,7 +22,7 @@ class PhotoRenderer::Impl {
     features_ = model_->Complete(ToTensors(std::span(&texture, 1)));
   }
 
-  [[nodiscard]] PersonPicture Render(const PhotoFrame& pose) const {
+  [[nodiscard]] RenderedPerson Render(const PhotoFrame& pose) const {
     CheckEncoded();
     const int S = model_->config.profile.image_size;
     BODYLOOM_CHECK(pose.size == S, "photo renderer: a frame of ", pose.size, " pixels a side, expected ", S);
@@ -48,7 +48,7 @@ PhotoRenderer::PhotoRenderer(const std::string& checkpoint_path, const PhotoConf
 PhotoRenderer::~PhotoRenderer() = default;
 
 void PhotoRenderer::Encode(const PartialTexture& texture) { impl_->Encode(texture); }
-PersonPicture PhotoRenderer::Render(const PhotoFrame& pose) const { return impl_->Render(pose); }
+RenderedPerson PhotoRenderer::Render(const PhotoFrame& pose) const { return impl_->Render(pose); }
 std::vector<float> PhotoRenderer::CompletedTexture() const { return impl_->CompletedTexture(); }
 
 }  // namespace bodyloom

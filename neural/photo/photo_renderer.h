@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A trained one-photo renderer at work: a texture in, pictures of its person in any pose out.
+/// Inference with a trained one-photo renderer: from a texture to images of its person in any pose.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "neural/base/person_picture.h"
+#include "neural/base/rendered_person.h"
 #include "neural/photo/photo_config.h"
 #include "render/texture/complete/partial_texture.h"
 #include "render/texture/photo_frame.h"
@@ -14,8 +14,8 @@
 namespace bodyloom {
 
 struct PhotoRendererOptions {
-  int reach = -1;       ///< pixels from the body beyond which is background; negative: the whole frame is computed
-  int num_threads = 0;  ///< 0: all cores
+  int reach = -1;              ///< pixels farther from the body are background; negative: the whole frame is computed
+  int num_threads = 0;         ///< 0: all cores
   std::string device = "cpu";  ///< or "cuda"
 };
 
@@ -28,16 +28,16 @@ class PhotoRenderer {
   PhotoRenderer(const PhotoRenderer&) = delete;
   PhotoRenderer& operator=(const PhotoRenderer&) = delete;
 
-  /// From now on this is the person. Throws std::invalid_argument for a texture of another size, and for one whose
-  /// unseen texels are not guessed where PhotoProfile::guesses_unseen wants it, or the other way round.
+  /// Sets the person. Throws std::invalid_argument for a texture of another size, and unless unseen texels are guessed
+  /// exactly if PhotoProfile::guesses_unseen is set.
   void Encode(const PartialTexture& texture);
 
-  /// The person in the pose of a frame (its picture, labels and texels are not looked at). Throws std::invalid_argument
+  /// Renders the person in the pose of a frame (its image, labels and texels are ignored). Throws std::invalid_argument
   /// before Encode and when the frame's size is not the configuration's.
-  [[nodiscard]] PersonPicture Render(const PhotoFrame& pose) const;
+  [[nodiscard]] RenderedPerson Render(const PhotoFrame& pose) const;
 
   /// The completed texture as colours: the first three features, planar 3 × U × U in [0, 1], everywhere in the atlas.
-  /// Variants without FeatureNet give the partial texture's, unseen texels grey. Throws std::invalid_argument before
+  /// Variants without FeatureNet return the partial texture's, unseen texels grey. Throws std::invalid_argument before
   /// Encode.
   [[nodiscard]] std::vector<float> CompletedTexture() const;
 

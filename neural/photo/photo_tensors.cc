@@ -47,7 +47,7 @@ TextureTensors ToTensors(std::span<const PartialTexture> textures) {
   const auto B = static_cast<int64_t>(textures.size());
   const int64_t U = textures[0].size;
   const Tensor rgb = torch::empty({B, 3, U, U}), visible = torch::empty({B, 1, U, U});
-  Tensor guessed;  // undefined where nothing is
+  Tensor guessed;  // undefined without guesses
   for (int64_t b = 0; b < B; ++b) {
     const PartialTexture& texture = textures[b];
     BODYLOOM_CHECK(texture.size == U && static_cast<int64_t>(texture.colour.size()) == 3 * U * U &&
@@ -74,15 +74,15 @@ PoseTensors PoseOf(std::span<const PhotoFrame> frames, std::span<const PhotoWind
   return pose;
 }
 
-PictureTensors PictureTensorsOf(std::span<const PhotoFrame> frames, std::span<const PhotoWindow> windows) {
-  PictureTensors picture;
-  picture.image = Cut(frames, windows, &PhotoFrame::image, "the picture", 3);
+ImageTensors ImageTensorsOf(std::span<const PhotoFrame> frames, std::span<const PhotoWindow> windows) {
+  ImageTensors tensors;
+  tensors.image = Cut(frames, windows, &PhotoFrame::image, "the tensors", 3);
   const bool labelled =
       std::none_of(frames.begin(), frames.end(), [](const PhotoFrame& frame) { return frame.labels.empty(); });
   const Tensor shown =
-      labelled ? Cut(frames, windows, &PhotoFrame::labels, "labels", 1) : picture.image.amax(1, /*keepdim=*/true);
-  picture.foreground = (shown > 0).to(torch::kFloat);
-  return picture;
+      labelled ? Cut(frames, windows, &PhotoFrame::labels, "labels", 1) : tensors.image.amax(1, /*keepdim=*/true);
+  tensors.foreground = (shown > 0).to(torch::kFloat);
+  return tensors;
 }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Frames of the one-photo renderer as tensors. Internal: includes LibTorch.
+/// Converts frames of the one-photo renderer to tensors. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -17,11 +17,11 @@ namespace bodyloom {
 struct TextureTensors {
   torch::Tensor colour;   ///< B×3×U×U, 0 where not visible
   torch::Tensor visible;  ///< B×1×U×U, 0 or 1
-  torch::Tensor guess;    ///< B×3×U×U, 0 where not guessed; undefined where nothing is
+  torch::Tensor guess;    ///< B×3×U×U, 0 where not guessed; undefined without guesses
 };
 TextureTensors ToTensors(std::span<const PartialTexture> textures);
 
-/// P_t: what the pixels of equal windows see of the body.
+/// P_t: the body's surface coordinates and parts at the pixels of windows of one size.
 struct PoseTensors {
   torch::Tensor uv;     ///< B×2×h×w
   torch::Tensor parts;  ///< B×1×h×w, part/24
@@ -30,12 +30,12 @@ struct PoseTensors {
 PoseTensors PoseOf(std::span<const PhotoFrame> frames, std::span<const PhotoWindow> windows);
 
 /// I_t in the same windows.
-struct PictureTensors {
+struct ImageTensors {
   torch::Tensor image;       ///< B×3×h×w, 0 on the background
-  torch::Tensor foreground;  ///< B×1×h×w, 0 or 1: labels other than 0, else where the picture is not black
+  torch::Tensor foreground;  ///< B×1×h×w, 0 or 1: labels other than 0, else where the image is not black
 };
-PictureTensors PictureTensorsOf(std::span<const PhotoFrame> frames, std::span<const PhotoWindow> windows);
+ImageTensors ImageTensorsOf(std::span<const PhotoFrame> frames, std::span<const PhotoWindow> windows);
 
-/// All throw std::invalid_argument when sizes do not fit each other or a window is not inside its frame.
+/// All functions throw std::invalid_argument when sizes do not fit each other or a window is not inside its frame.
 
 }  // namespace bodyloom

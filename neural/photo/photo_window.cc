@@ -9,8 +9,8 @@
 namespace bodyloom {
 namespace {
 
-constexpr uint8_t kFirstOfHead = 23;        ///< of DensePose's parts
-constexpr double kLooksAtCamera = 2.0 / 3;  ///< of the head's pixels are of its front
+constexpr uint8_t kFirstOfHead = 23;        ///< first of DensePose's parts of the head
+constexpr double kLooksAtCamera = 2.0 / 3;  ///< minimum share of the head's pixels on its front
 
 /// Box of the pixels whose part is at least `first`.
 PhotoWindow BoxOfParts(const PhotoFrame& frame, uint8_t first) {
@@ -30,7 +30,7 @@ PhotoWindow BoxOfParts(const PhotoFrame& frame, uint8_t first) {
   return right < 0 ? PhotoWindow{} : PhotoWindow{left, top, right - left + 1, bottom - top + 1};
 }
 
-/// An interval of `length` with the same middle, inside [0, size).
+/// Changes the interval to `length` with the same centre, inside [0, size).
 void Widen(int length, int size, int* begin, int* extent) {
   *begin = std::clamp(*begin + (*extent - length) / 2, 0, size - length);
   *extent = length;

@@ -9,15 +9,15 @@
 
 namespace bodyloom {
 
-PersonPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach) {
+RenderedPerson RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach) {
   const torch::NoGradGuard no_grad;
   const int S = pose.size;
   const size_t pixels = static_cast<size_t>(S) * S;
-  PersonPicture picture;
-  picture.size = S;
-  picture.image.assign(3 * pixels, 0);
-  picture.alpha.assign(pixels, 0);
-  if (std::all_of(pose.parts.begin(), pose.parts.end(), [](uint8_t part) { return part == 0; })) return picture;
+  RenderedPerson rendered;
+  rendered.size = S;
+  rendered.image.assign(3 * pixels, 0);
+  rendered.alpha.assign(pixels, 0);
+  if (std::all_of(pose.parts.begin(), pose.parts.end(), [](uint8_t part) { return part == 0; })) return rendered;
   const PhotoWindow window =
       reach < 0 ? PhotoWindow{0, 0, S, S} : WindowAround(pose, reach, model->config.SmallestSide());
   const PoseTensors seen = PoseOf(std::span(&pose, 1), std::span(&window, 1));
@@ -31,9 +31,9 @@ PersonPicture RenderPhoto(PhotoModel model, const torch::Tensor& features, const
       }
     }
   };
-  paste(result.image, &picture.image);
-  paste(result.alpha, &picture.alpha);
-  return picture;
+  paste(result.image, &rendered.image);
+  paste(result.alpha, &rendered.alpha);
+  return rendered;
 }
 
 }  // namespace bodyloom

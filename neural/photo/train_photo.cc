@@ -44,7 +44,7 @@ class PhotoTrainer : public RendererTrainer {
         config_(options.config),
         scoring_{std::make_shared<const Lpips>(LpipsFrom(options.alexnet, options.lpips_heads)), nullptr,
                  options.ssim} {
-    torch::manual_seed(options.seed);  // whether or not LPIPS drew a substitute for its weights
+    torch::manual_seed(options.seed);  // independent of random numbers drawn for LPIPS' substitute
     if (config_.GuessesUnseen()) guess_.emplace(source.texture_size, source.texel_parts, source.texel_places);
     model_ = PhotoModel(config_);
     discriminator_ = PhotoDiscriminator(config_);
@@ -101,8 +101,8 @@ class PhotoTrainer : public RendererTrainer {
       if (shown) preview.partial_texture = texture.colour;
       if (guess_) GuessTexture(*guess_, &texture);
       const Tensor features = model_->Complete(ToTensors(std::span(&texture, 1)));
-      preview.picture = RenderPhoto(model_, features, preview.target, options_.reach);
-      scorer.Add(preview.picture, preview.target);
+      preview.rendered = RenderPhoto(model_, features, preview.target, options_.reach);
+      scorer.Add(preview.rendered, preview.target);
       if (!shown) continue;
       preview.completed_texture = HostValues<float>((0.5 * (features.slice(1, 0, 3) + 1)).clamp(0, 1));
       previews.push_back(std::move(preview));
@@ -130,7 +130,7 @@ class PhotoTrainer : public RendererTrainer {
                           back_of_head_);
   }
 
-  /// Steps before RenderNet's turn.
+  /// Steps before RenderNet's training.
   [[nodiscard]] int InpaintSteps() const { return options_.TotalSteps() - options_.steps; }
   [[nodiscard]] bool IsJudged(int step) const { return step >= options_.FirstJudgedStep(); }
   [[nodiscard]] double RateShare(int step) const override {
@@ -154,7 +154,7 @@ class PhotoTrainer : public RendererTrainer {
     return Descend(total, {feature_optimizer_});
   }
 
-  /// F_s; fixed in kInpaint's second stage.
+  /// Computes F_s; fixed in kInpaint's second stage.
   Tensor Features(const PhotoBatch& batch) {
     if (config_.variant != PhotoVariant::kInpaint) return model_->Complete(batch.source);
     const torch::NoGradGuard no_grad;
@@ -176,7 +176,7 @@ class PhotoTrainer : public RendererTrainer {
         torch::binary_cross_entropy_with_logits(result.alpha_logit, batch.truth.foreground), &total);
     if (options_.perceptual_weight > 0) {
       const SeenPair seen = See(result.image, batch.truth.image);
-      Add("perceptual", options_.perceptual_weight, PerceptualLoss(seen.picture, seen.truth), &total);
+      Add("perceptual", options_.perceptual_weight, PerceptualLoss(seen.image, seen.truth), &total);
     }
     if (!sphereface_.is_empty() && options_.face_weight > 0) {
       Add("face", options_.face_weight, FaceLoss(sphereface_, result.image, batch.truth.image, batch.faces), &total);
@@ -194,8 +194,8 @@ class PhotoTrainer : public RendererTrainer {
 
   const PhotoSource& source_;
   const PhotoSource& validation_source_;
-  std::optional<TexelNeighbours> guess_;  ///< where the profile has one
-  std::vector<uint8_t> back_of_head_;     ///< where faces are judged
+  std::optional<TexelNeighbours> guess_;  ///< if the profile uses one
+  std::vector<uint8_t> back_of_head_;     ///< if there is a face loss
   const TrainPhotoOptions& options_;
   const PhotoConfig& config_;
   PersonScoring scoring_;
@@ -204,7 +204,7 @@ class PhotoTrainer : public RendererTrainer {
   SphereFace sphereface_{nullptr};  ///< empty without weights
   Adam *feature_optimizer_ = nullptr, *render_optimizer_ = nullptr, *discriminator_optimizer_ = nullptr;
   PersonScores scores_;
-  std::unique_ptr<Prefetcher<PhotoBatch>> batches_;  ///< last: its thread uses the rest
+  std::unique_ptr<Prefetcher<PhotoBatch>> batches_;  ///< last member: its thread uses the others
 };
 
 }  // namespace
@@ -239,7 +239,7 @@ TrainPhotoSummary TrainPhoto(const PhotoSource& source, const TrainPhotoOptions&
   BODYLOOM_CHECK(options.IsValid(&why), "photo training: ", why);
   const PhotoProfile& p = options.config.profile;
   const auto check = [&](const PhotoSource& people, const std::vector<int>& persons) {
-    BODYLOOM_CHECK(people.size == p.image_size && people.texture_size == p.texture_size, "photo training: pictures of ",
+    BODYLOOM_CHECK(people.size == p.image_size && people.texture_size == p.texture_size, "photo training: images of ",
                    people.size, " pixels and textures of ", people.texture_size, " texels a side, expected ",
                    p.image_size, " and ", p.texture_size);
     for (const int person : persons) {

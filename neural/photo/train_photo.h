@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the one-photo renderer on pairs of pictures of the same person.
+/// Trains the one-photo renderer on pairs of images of the same person.
 ///
 ///   L_G = 10 L_p + 5 L_face + L_tex + L_adv + L_α       (Sarkar et al., ECCV 2020, Section 3.5)
 /// L_p: mean absolute differences of VGG-19's features relu1_1, 2_1, 3_1, 4_1, 5_1, unweighted; L_face, L_tex:
-/// neural/photo/photo_losses.h, faces being heads that look at the camera; L_adv: binary cross entropy of a
-/// discriminator on several scales that sees the feature image R (as it is: no gradient goes through it) beside the
-/// picture, updated every step from the one at which it joins (`gan_from`; until then it neither learns nor judges);
+/// neural/photo/photo_losses.h, for heads facing the camera; L_adv: binary cross entropy of a multi-scale discriminator
+/// conditioned on the feature image R (without gradient through it), used and updated in every step from `gan_from` on;
 /// L_α, not in the paper: binary cross entropy of alpha against the labels' foreground. Adam 2e-4, β₁ 0.5, linear decay
-/// over the last half, for both sides.
+/// over the last half, for generator and discriminator.
 ///
 /// The variant kInpaint trains FeatureNet by L_tex alone for `inpaint_steps` steps, then fixes it and trains RenderNet
-/// for `steps` steps; the steps of both stages are counted through.
+/// for `steps` steps; steps are numbered across both stages.
 ///
-/// Without VGG's weights a random-feature substitute takes its place; without SphereFace's L_face is left out
-/// (`losses_off` says so). Writes into run_dir: checkpoint.bin and metrics.csv. A run that goes on from a checkpoint
-/// ends with the same bytes as one that was never interrupted (same binary, machine and threads).
+/// Without VGG's weights a random-feature substitute is used; without SphereFace's L_face is left out (listed in
+/// `losses_off`). Writes into run_dir: checkpoint.bin and metrics.csv. A run resumed from a checkpoint ends with the
+/// same bytes as an uninterrupted one (same binary, machine and threads).
 #pragma once
 
 #include <functional>
@@ -34,33 +33,33 @@ namespace bodyloom {
 struct PhotoPreview {
   PhotoPair pair;
   PhotoFrame source, target;
-  PersonPicture picture;
+  RenderedPerson rendered;
   std::vector<float> partial_texture, completed_texture;  ///< planar 3 × U × U in [0, 1]
 };
 
 struct TrainPhotoOptions : TrainingRun {
   PhotoConfig config;
   std::vector<int> train, validation;              ///< persons; validation may be empty
-  const PhotoSource* validation_source = nullptr;  ///< whose persons `validation` are; nullptr: the same
-  int validation_pairs = 2;                        ///< a person, the same in every run
-  int inpaint_steps = 0;                           ///< of kInpaint's first stage; 0: as many as `steps`
+  const PhotoSource* validation_source = nullptr;  ///< source of the persons in `validation`; nullptr: the same
+  int validation_pairs = 2;                        ///< per person, the same in every run
+  int inpaint_steps = 0;                           ///< steps of kInpaint's first stage; 0: as many as `steps`
   int batch = 4;
   double learning_rate = 2e-4;
   double perceptual_weight = 10, face_weight = 5, texture_weight = 1, gan_weight = 1, alpha_weight = 1;
-  /// Share of `steps` after which the discriminator joins: 0, from the first step, is the paper's; 1: never. From a
-  /// cold start it makes every figure worse for hundreds of steps, which a short run does not get back.
+  /// Share of `steps` after which the discriminator is used: 0: from the first step, as in the paper; 1: never. From an
+  /// untrained start it worsens all figures for hundreds of steps, from which a short run does not recover.
   double gan_from = 0.5;
   int reach = 0;                     ///< of clothes beyond the body, pixels (neural/photo/photo_window.h)
   WeightsFrom vgg19;                 ///< empty: a seeded random-feature substitute
   WeightsFrom sphereface;            ///< empty: no face loss
   WeightsFrom alexnet, lpips_heads;  ///< empty: validation's LPIPS is a random-feature substitute
-  PictureSimilarity ssim;            ///< of validation; may be empty
+  ImageSimilarity ssim;              ///< of validation; may be empty
   int preview_pairs = 4;
   std::function<void(int step, const std::vector<PhotoPreview>&)> preview;
 
-  /// Of both stages.
+  /// Number of steps of both stages.
   [[nodiscard]] int TotalSteps() const;
-  /// The first step (of both stages, from 0) that the discriminator takes part in; TotalSteps() where it never does.
+  /// The first step (over both stages, from 0) that uses the discriminator; TotalSteps() if none does.
   [[nodiscard]] int FirstJudgedStep() const;
   [[nodiscard]] bool IsValid(std::string* why) const;
 };

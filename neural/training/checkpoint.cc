@@ -51,8 +51,7 @@ auto KeyOf(const State&, const Tensor& parameter) {
   }
 }
 
-/// An optimizer's state as tensors: of each group the learning rate, of each parameter that has been stepped its step
-/// and moments.
+/// An optimizer's state as tensors: the learning rate of each group, and step and moments of each updated parameter.
 template <class ParamState>
 NamedTensors StateOf(const std::string& name, torch::optim::Optimizer& optimizer) {
   NamedTensors tensors;
@@ -82,7 +81,7 @@ NamedTensors OptimizerState(const std::string& name, torch::optim::Optimizer& op
                             : StateOf<torch::optim::AdamParamState>(name, optimizer);
 }
 
-/// Tensors of a file, each to be requested once.
+/// Tensors of a file, each of which must be requested exactly once.
 class Contents {
  public:
   Contents(std::string path, const NamedTensors& tensors) : path_(std::move(path)) {
@@ -90,7 +89,7 @@ class Contents {
   }
   [[noreturn]] void Fail(const std::string& what) const { throw std::runtime_error(path_ + ": " + what); }
 
-  /// Null when the file does not have it.
+  /// Null if the file does not have it.
   const Tensor* Find(const std::string& name) {
     const auto found = tensors_.find(name);
     if (found == tensors_.end()) return nullptr;
@@ -110,7 +109,7 @@ class Contents {
     }
     return tensor;
   }
-  /// What begins with `prefix` and was not requested.
+  /// Throws if tensors that begin with `prefix` were not requested.
   void ExpectNoMore(const std::string& prefix) const {
     for (const auto& item : tensors_) {
       if (item.first.rfind(prefix, 0) == 0 && asked_.count(item.first) == 0) {
@@ -127,7 +126,7 @@ class Contents {
 
 using Steps = std::vector<std::function<void()>>;
 
-/// Checks an optimizer's state against its parameters and notes what to do once all is checked.
+/// Checks an optimizer's state against its parameters and defers the changes until everything is checked.
 template <class ParamState>
 void PlanState(const std::string& name, torch::optim::Optimizer* optimizer, Contents* contents, Steps* steps) {
   int64_t index = 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The state of a training run in one file, from which the run goes on bit for bit. Internal: includes LibTorch.
+/// Checkpoint of a training run in one file, from which the run resumes bit for bit. Internal: includes LibTorch.
 ///
 /// Holds modules (parameters and buffers by name), Adam and AdamW optimizers (moments, steps, learning rates), named
 /// tensors (such as the state of a recurrence), the step, the configuration as text and the state of LibTorch's CPU
-/// random generator. Not held: random generators of other devices and of the caller.
+/// random generator. Not included: random generators of other devices and of the caller.
 ///
 /// File, little endian: "BLOOMCP1"; u64 size of the file; records (u32 name length, name, u8 element type, u8
-/// dimensions, i64 sizes, values); u64 checksum of everything before it. Records come in the order added, so equal
+/// dimensions, i64 sizes, values); u64 checksum of everything before it. Records are in the order added, so equal
 /// states give equal bytes.
 #pragma once
 
@@ -23,38 +23,38 @@
 namespace bodyloom {
 
 struct CheckpointInfo {
-  std::string identity;     ///< what was trained, such as "motion renderer, profile cpu, 256 px"
+  std::string identity;     ///< the trained networks, such as "motion renderer, profile cpu, 256 px"
   std::string config_json;  ///< as the caller gave it
   int64_t step = 0;
 };
 
-/// What a file declares of itself, to build the right networks before they are loaded. Checks the file as Load does.
+/// Reads the declarations of a file, to build its networks before loading them. Checks the file as Load does.
 CheckpointInfo ReadCheckpointInfo(const std::string& path);
 
 enum class CheckpointPart { kAll, kModules };
 
 class Checkpoint {
  public:
-  /// One line that says which networks the file is for; a file with another one is refused.
+  /// `identity`: one line that identifies the networks; files with another one are refused.
   explicit Checkpoint(std::string identity);
 
-  /// What is added must outlive this; names are unique and not empty.
+  /// Adds an object, which must outlive this; names must be unique and not empty.
   void Add(const std::string& name, torch::nn::Module* module);
-  /// Adam or AdamW; std::invalid_argument for others.
+  /// Adds an Adam or AdamW optimizer; std::invalid_argument for others.
   void Add(const std::string& name, torch::optim::Optimizer* optimizer);
-  /// Replaced by Load, whatever its shape; undefined tensors stay undefined.
+  /// Adds a tensor. Load replaces it with any shape; undefined tensors stay undefined.
   void Add(const std::string& name, torch::Tensor* tensor);
 
   int64_t step = 0;
   std::string config_json;
 
-  /// The file appears whole or not at all. Throws std::runtime_error "path: why" (no folder, disk full).
+  /// Writes the file atomically. Throws std::runtime_error "path: why" (no folder, disk full).
   void Save(const std::string& path) const;
 
-  /// All or nothing: nothing of the run changes unless the whole file fits. kModules leaves optimizers, tensors and the
-  /// random generator as they are (for inference; the file may then hold other ones). Throws std::runtime_error, one
-  /// line that begins with the path, for a file that is missing, not a checkpoint, cut off, damaged, of another
-  /// identity, or whose modules, tensors or optimizers are others (naming the tensor, its shape and the expected one).
+  /// Loads the file; on failure nothing of the run changes. kModules leaves optimizers, tensors and the random
+  /// generator unchanged (for inference; those of the file may then differ). Throws std::runtime_error, one line that
+  /// begins with the path, for a file that is missing, not a checkpoint, cut off, damaged, of another identity, or with
+  /// other modules, tensors or optimizers (naming the tensor, its shape and the expected one).
   void Load(const std::string& path, CheckpointPart part = CheckpointPart::kAll);
 
  private:
@@ -65,8 +65,8 @@ class Checkpoint {
   void CheckName(const std::string& name) const;
 };
 
-/// The networks of a run, "model" of its checkpoint, ready for use on `device`. The checkpoint is of that configuration
-/// (ToText); throws as Checkpoint::Load otherwise.
+/// Loads the networks of a run ("model" of its checkpoint) for inference on `device`. The checkpoint must be of this
+/// configuration (ToText); throws as Checkpoint::Load otherwise.
 template <class Model, class Config>
 Model LoadModel(const std::string& path, const Config& config, int num_threads, const std::string& device) {
   StartNeuralRuntime(num_threads);

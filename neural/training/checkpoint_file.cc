@@ -29,7 +29,7 @@ constexpr std::array<torch::ScalarType, 10> kTypes = {torch::kFloat, torch::kDou
                                                       torch::kLong,  torch::kInt,    torch::kShort, torch::kChar,
                                                       torch::kByte,  torch::kBool};
 
-/// FNV-1a over words of eight bytes, with the high bits folded back so that every bit reaches all others.
+/// FNV-1a over words of eight bytes, with the high bits folded back so that every bit affects all others.
 class Checksum {
  public:
   void Add(const void* bytes, size_t size) {
@@ -70,7 +70,7 @@ uint64_t RecordBytes(const std::string& name, const torch::Tensor& tensor) {
   return sizeof(uint32_t) + name.size() + 2 + sizeof(int64_t) * tensor.dim() + tensor.nbytes();
 }
 
-/// Reads within the file and sums what it read; every failure is one line with the path.
+/// Reads within the file's bounds and updates the checksum; failures are reported in one line with the path.
 class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path), file_(path, std::ios::binary) {

@@ -13,11 +13,12 @@ namespace {
 
 using torch::Tensor;
 
-// Of the quintic a x + b x³ + c x⁵ (Jordan et al.): steep at zero, near 1 from 0.05 on after five rounds.
+// Coefficients of the quintic a x + b x³ + c x⁵ (Jordan et al.): steep at zero, near 1 above 0.05 after five
+// iterations.
 constexpr double kA = 3.4445, kB = -4.7750, kC = 2.0315;
 constexpr int kRounds = 5;
 
-/// m×k · k×n. As a convolution: the library behind those is several times faster than the packaged BLAS.
+/// m×k · k×n as a convolution, whose library is several times faster than the packaged BLAS.
 Tensor Multiply(const Tensor& a, const Tensor& b) { return torch::conv1d(b.unsqueeze(0), a.unsqueeze(-1)).squeeze(0); }
 
 }  // namespace

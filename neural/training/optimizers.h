@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Adam as image-to-image networks are trained with it. Internal: includes LibTorch.
+/// Optimizers, learning rate schedules and averaging of weights. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -13,12 +13,12 @@
 
 namespace bodyloom {
 
-/// β₁ 0.5, β₂ 0.999 (Isola et al., CVPR 2017).
+/// Adam with β₁ 0.5, β₂ 0.999, usual for image-to-image networks (Isola et al., CVPR 2017).
 inline std::unique_ptr<torch::optim::Adam> MakeAdam(const torch::nn::Module& module, double rate) {
   return std::make_unique<torch::optim::Adam>(module.parameters(), torch::optim::AdamOptions(rate).betas({0.5, 0.999}));
 }
 
-/// The learning rate of all of an optimizer's parameters, for the steps that follow.
+/// Sets the learning rate of all parameters of an optimizer.
 inline void SetRate(torch::optim::Adam* optimizer, double rate) {
   for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamOptions&>(group.options()).lr(rate);
 }
@@ -27,14 +27,14 @@ inline void SetRate(torch::optim::AdamW* optimizer, double rate) {
   for (auto& group : optimizer->param_groups()) static_cast<torch::optim::AdamWOptions&>(group.options()).lr(rate);
 }
 
-/// Off while a discriminator only judges: its own gradients are not computed then.
+/// Enables or disables gradients of a module's parameters, for instance of a discriminator in the generator's step.
 inline void RequireGradients(torch::nn::Module* module, bool on) {
   for (torch::Tensor& parameter : module->parameters()) parameter.set_requires_grad(on);
 }
 
 // Learning rates as functions of the step, 0 … steps − 1.
 
-/// `rate` for the first half, then a straight line that would reach 0 at `steps`.
+/// `rate` for the first half, then linear decay to 0 at `steps`.
 inline double LinearDecayOverLastHalf(double rate, int64_t step, int64_t steps) {
   BODYLOOM_CHECK(steps > 0 && step >= 0, "learning rate: step ", step, " of ", steps);
   const double left = 1 - static_cast<double>(step) / static_cast<double>(steps);
@@ -50,18 +50,19 @@ inline double CosineWithWarmup(double rate, int64_t step, int64_t steps, int64_t
   return rate * warm * 0.5 * (1 + std::cos(M_PI * done));
 }
 
-// Muon: momentum whose matrices are made orthogonal before each step.
+// Muon: momentum matrices are orthogonalised before each step.
 //
 // M ← μ M + G,   U = orthogonal factor of (G + μ M),   W ← (1 − ηλ) W − 0.2 η √max(m, n) U
 //
 // for a weight of m outputs and n inputs (all taps of a convolution together). The orthogonal factor comes from five
 // Newton–Schulz iterations, which leave its singular values between about 0.7 and 1.2; the factor 0.2 √max(m, n) gives
-// the step the size of an Adam step, so that one learning rate η and decay λ serve both. For weights in the middle of
-// a network; biases, norms and outputs belong to Adam.
+// the step the size of an Adam step, so that both share the learning rate η and decay λ. For hidden weights of a
+// network; biases, norms and outputs should use Adam.
 // Sources: Jordan et al., "Muon: an optimizer for hidden layers in neural networks" (2024); Liu et al., "Muon is
 // scalable for LLM training" (2025), for the factor.
 
-/// The nearest orthogonal matrix (U Vᵀ of U Σ Vᵀ) to an m×n matrix, roughly: singular values end near 1, zeros stay.
+/// The nearest orthogonal matrix (U Vᵀ of U Σ Vᵀ) to an m×n matrix, approximately: singular values become near 1, zeros
+/// stay.
 torch::Tensor ApproximateOrthogonalFactor(const torch::Tensor& matrix);
 
 class Muon {
@@ -71,13 +72,13 @@ class Muon {
     double weight_decay = 0;
   };
 
-  /// Weights with two dimensions or more; those beyond the first count as inputs.
+  /// `weights`: of two dimensions or more; those beyond the first count as inputs.
   Muon(std::vector<torch::Tensor> weights, const Options& options);
 
-  /// One step by the weights' gradients. Weights without a gradient stay.
+  /// Performs one step by the weights' gradients. Weights without a gradient stay.
   void Step(double learning_rate);
 
-  /// M of each weight, in their order: what a checkpoint keeps.
+  /// M of each weight, in their order: the state for a checkpoint.
   [[nodiscard]] std::vector<torch::Tensor>& momenta() { return momenta_; }
 
  private:
@@ -85,15 +86,15 @@ class Muon {
   Options options_;
 };
 
-// The average of a network's weights over the last part of a run. Internal: includes LibTorch.
+// Average of a network's weights over the last part of a run.
 //
-// w̄_n = w̄_{n−1} + (w_n − w̄_{n−1}) (γ + 1) / (n + γ),   γ = 1 / share − 2,   n = 1, 2, … steps
-// The steps so far, each weighted by some t^γ: their mean age is `share` of the steps, however long the run. The last
-// steps of Adam wander around an optimum; their mean lies nearer to it, whatever the learning rate. Source:
-// polynomial-decay averaging, Shamir and Zhang, "Stochastic gradient descent for non-smooth optimization", ICML 2013.
+//   w̄_n = w̄_{n−1} + (w_n − w̄_{n−1}) (γ + 1) / (n + γ),   γ = 1 / share − 2,   n = 1, 2, … steps
+// Step t has a weight of about t^γ: the mean age is `share` of the steps for any length of the run. Adam's last steps
+// fluctuate around an optimum; their mean is nearer to it for any learning rate. Source: polynomial-decay averaging,
+// Shamir and Zhang, "Stochastic gradient descent for non-smooth optimization", ICML 2013.
 
-/// Moves `average` towards `learner`, which has the same parameters and buffers; buffers are copied. n counts from 1,
-/// where the average is the learner. Throws std::invalid_argument for networks that differ, for n below 1 and for a
+/// Updates `average` by `learner`, which has the same parameters and buffers; buffers are copied. n counts from 1,
+/// where the average equals the learner. Throws std::invalid_argument for networks that differ, for n below 1 and for a
 /// share outside (0, 0.5].
 void AverageWeights(const torch::nn::Module& learner, int64_t n, double share, torch::nn::Module* average);
 

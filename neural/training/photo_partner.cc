@@ -12,7 +12,7 @@ int PartnerOf(const PhotoSource& people, int person, int source, PartnerDiffers 
   BODYLOOM_CHECK(person >= 0 && static_cast<size_t>(person) < people.num_frames.size(), "pairs of photos: person ",
                  person, " of ", people.num_frames.size());
   const int frames = people.num_frames[person];
-  BODYLOOM_CHECK(source >= 0 && source < frames, "pairs of photos: picture ", source, " of ", frames);
+  BODYLOOM_CHECK(source >= 0 && source < frames, "pairs of photos: image ", source, " of ", frames);
   std::vector<int> others, of_another_pose, of_another_view_too;
   for (int k = 1; k < frames; ++k) {
     const int frame = (source + k) % frames;
@@ -20,8 +20,8 @@ int PartnerOf(const PhotoSource& people, int person, int source, PartnerDiffers 
     if (people.places.empty()) continue;
     BODYLOOM_CHECK(
         people.places.size() == people.num_frames.size() && people.places[person].size() == static_cast<size_t>(frames),
-        "pairs of photos: places of other pictures than there are");
-    const PicturePlace &here = people.places[person][source], &there = people.places[person][frame];
+        "pairs of photos: places of other images than there are");
+    const ImagePlace &here = people.places[person][source], &there = people.places[person][frame];
     if (here.pose == there.pose) continue;
     of_another_pose.push_back(frame);
     if (here.view != there.view) of_another_view_too.push_back(frame);

@@ -13,7 +13,7 @@ using torch::Tensor;
 
 namespace {
 
-/// A renderer's seed decides all that is drawn from here on.
+/// Seeds LibTorch's generator before any random number is drawn.
 const TrainingRun& Seeded(const TrainingRun& run) {
   StartNeuralRuntime(run.num_threads);
   UseNeuralDevice(run.device);
@@ -21,7 +21,7 @@ const TrainingRun& Seeded(const TrainingRun& run) {
   return run;
 }
 
-/// Its place among the losses; their number where it is none.
+/// Index of a loss; the number of losses if there is none of that name.
 size_t PlaceOfLoss(const std::vector<TrainingFigure>& losses, const char* name) {
   size_t place = 0;
   while (place < losses.size() && std::strcmp(losses[place].name, name) != 0) ++place;
@@ -69,13 +69,13 @@ torch::optim::Adam* RendererTrainer::AddOptimizer(const char* name, const torch:
   return optimizer;
 }
 
-RendererTrainer::SeenPair RendererTrainer::See(const Tensor& picture, const Tensor& truth) {
+RendererTrainer::SeenPair RendererTrainer::See(const Tensor& image, const Tensor& truth) {
   SeenPair seen;
   {
     const torch::NoGradGuard no_grad;
     seen.truth = vgg_(truth);
   }
-  seen.picture = vgg_(picture);
+  seen.image = vgg_(image);
   return seen;
 }
 
@@ -109,7 +109,7 @@ bool RendererTrainer::Descend(const Tensor& total, std::initializer_list<Adam*> 
   if (PlaceOfLoss(losses_, "loss") < losses_.size()) Note("loss", total_);
   double sum = total_;
   for (const TrainingFigure& loss : losses_) sum += loss.value;
-  if (!std::isfinite(sum)) return false;  // a step would spoil the weights
+  if (!std::isfinite(sum)) return false;  // a step would make the weights not finite
   for (Adam* optimizer : optimizers) optimizer->zero_grad();
   total.backward();
   RequireGradients(discriminator_.get(), true);

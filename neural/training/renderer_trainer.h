@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the training of every renderer has in common: networks that draw, beside a discriminator that judges and a
-/// feature network that compares; Adam with one course of the learning rate for all; losses by name, as metrics.csv has
-/// them. A renderer adds its networks, batches, losses and validation. Internal: includes LibTorch.
+/// Base class of the renderers' trainers: generator networks, a discriminator and a feature network for the perceptual
+/// loss; Adam with one learning rate schedule for all; losses by name, as in metrics.csv. A renderer adds its networks,
+/// batches, losses and validation. Internal: includes LibTorch.
 #pragma once
 
 #include <torch/torch.h>
@@ -25,43 +25,44 @@ class RendererTrainer : public TrainedSystem {
   bool Step(int step) final;
   /// The learning rate, then the losses of the last step in the constructor's order; 0: not computed.
   [[nodiscard]] std::vector<TrainingFigure> Row(int done) const override;
-  /// "loss", the losses that `told` names, and "validation" once there was one.
+  /// "loss", the losses named in `told`, and "validation" after the first one.
   [[nodiscard]] std::vector<TrainingFigure> Figures() const override;
 
  protected:
   using Adam = torch::optim::Adam;
 
   /// Starts the runtime and LibTorch's random generator. `run` must outlive this; `identity` is the checkpoint's;
-  /// `losses` are columns of metrics.csv, among them "loss" where the sum has one. `told`: to the caller as well.
+  /// `losses`: columns of metrics.csv, including "loss" if the sum is a column. `told`: losses also reported to the
+  /// caller.
   RendererTrainer(const TrainingRun& run, int total_steps, const std::string& identity,
                   std::initializer_list<const char*> losses, std::initializer_list<const char*> told);
 
-  /// The step's losses, by LearnToJudge and Descend; false when one of them is not finite.
+  /// Performs the step's optimisation by LearnToJudge and Descend; false when a loss is not finite.
   virtual bool Learn(int step) = 0;
   /// PSNR of the last validation, NaN before the first.
   [[nodiscard]] virtual double ValidationPsnr() const = 0;
-  /// Of all learning rates: 1 for the first half, then falling to 0.
+  /// Factor of all learning rates: 1 for the first half, then decreasing to 0.
   [[nodiscard]] virtual double RateShare(int step) const;
 
-  /// Adds the networks to the checkpoint: modules first, then their optimizers, as files of earlier versions have them.
+  /// Adds the networks to the checkpoint: modules first, then their optimizers, the order in files of earlier versions.
   void AddJudge(std::shared_ptr<torch::nn::Module> discriminator);
   Adam* AddOptimizer(const char* name, const torch::nn::Module& module, double rate);
 
-  /// Of a picture and of the true one, which needs no gradient.
+  /// Features of an image and of the true one, which needs no gradient.
   struct SeenPair {
-    std::vector<torch::Tensor> picture, truth;
+    std::vector<torch::Tensor> image, truth;
   };
-  [[nodiscard]] SeenPair See(const torch::Tensor& picture, const torch::Tensor& truth);
+  [[nodiscard]] SeenPair See(const torch::Tensor& image, const torch::Tensor& truth);
 
   void Note(const char* loss, double value);
   [[nodiscard]] double Noted(const char* loss) const;
-  /// *total += weight · loss; noted without its weight.
+  /// *total += weight · loss; logs the loss without its weight.
   void Add(const char* name, double weight, const torch::Tensor& loss, torch::Tensor* total);
-  /// A step of the discriminator by its loss; false, and none is taken, when that is not finite.
+  /// Performs a step of the discriminator; returns false without a step when its loss is not finite.
   bool LearnToJudge(const torch::Tensor& loss, Adam* optimizer);
-  /// The discriminator's logits are to be taken without its own gradients, until Descend.
+  /// Disables gradients of the discriminator's parameters until Descend.
   void OnlyJudge();
-  /// A step down the sum of all losses; false, and none is taken, when one of those noted is not finite.
+  /// Performs a step on the sum of all losses; returns false without a step when a logged loss is not finite.
   bool Descend(const torch::Tensor& total, std::initializer_list<Adam*> optimizers);
 
   RendererTraining Train();
@@ -77,7 +78,7 @@ class RendererTrainer : public TrainedSystem {
   std::vector<std::string> told_;
   double total_ = 0;
   std::shared_ptr<torch::nn::Module> discriminator_;
-  std::vector<std::pair<std::unique_ptr<Adam>, double>> optimizers_;  ///< and their rates at the highest
+  std::vector<std::pair<std::unique_ptr<Adam>, double>> optimizers_;  ///< optimizers and their maximum rates
 };
 
 }  // namespace bodyloom

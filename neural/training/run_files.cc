@@ -56,7 +56,7 @@ void RunFile::Commit() {
     errno = error;
     Fail("cannot be written");
   }
-  // The new name is on the disk when its folder is.
+  // Flushes the folder, so that the renaming is on the disk.
   const std::string folder = std::filesystem::path(path_).parent_path().string();
   const int folder_descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder_descriptor >= 0) {
@@ -98,7 +98,7 @@ void MetricsLog::KeepUpTo(int64_t step) {
   std::ifstream file(path_);
   std::string line;
   if (!std::getline(file, line)) return;
-  // By column of this log: its place in the file's lines; none: an earlier version did not write it.
+  // Index in the file's lines for each column of this log; none: not written by an earlier version.
   const std::vector<std::string> columns = Cells(header_), theirs = Cells(line);
   std::vector<std::optional<size_t>> place(columns.size());
   size_t found = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options that every training run has, how far it is, and how it ended.
+/// Common options, progress and outcome of training runs.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace bodyloom {
 
-/// A figure of a run by its name, such as "image", 0.034, or "validation", 21.3, " dB".
+/// A named figure of a run, such as "image", 0.034, or "validation", 21.3, " dB".
 struct TrainingFigure {
   const char* name = "";
   double value = 0;
@@ -17,11 +17,11 @@ struct TrainingFigure {
 };
 
 struct TrainingProgress {
-  int step = 0, steps = 0;              ///< that the weights have seen, and in all
-  std::vector<TrainingFigure> figures;  ///< losses of the last step, then of the last validation, once there was one
+  int step = 0, steps = 0;              ///< completed and total
+  std::vector<TrainingFigure> figures;  ///< losses of the last step, then scores of the last validation, if any
   double seconds = 0;
 
-  /// The figure of that name; throws std::invalid_argument when there is none.
+  /// The figure of a name; throws std::invalid_argument when there is none.
   [[nodiscard]] double At(const std::string& name) const;
 };
 
@@ -31,35 +31,35 @@ struct TrainingRun {
   int num_threads = 0;                                                  ///< of LibTorch; 0: all cores
   std::string device = "cpu";                                           ///< or "cuda" (neural/base/runtime.h)
   int report_every = 20, validate_every = 500, checkpoint_every = 250;  ///< steps
-  int patience = 0;         ///< stop after so many validations without a better one (0: never), where there are any
+  int patience = 0;         ///< stop after so many validations without improvement (0: never)
   std::string run_dir;      ///< exists; checkpoint.bin and metrics.csv are written here
-  std::string config_json;  ///< kept in the checkpoint as it is
-  bool resume = false;      ///< go on from run_dir/checkpoint.bin
+  std::string config_json;  ///< stored in the checkpoint unchanged
+  bool resume = false;      ///< resume from run_dir/checkpoint.bin
   std::function<bool(const TrainingProgress&)> progress;  ///< return false to stop after a checkpoint
 };
 
-/// Of what all runs have in common. `why` may be nullptr.
+/// Checks the common options. `why` may be nullptr.
 bool IsValidRun(const TrainingRun& run, std::string* why);
 
 enum class TrainingStatus {
   kFinished,
   kStopped,     ///< by the caller, after a checkpoint
-  kNoProgress,  ///< patience ran out, after a checkpoint
-  kNotFinite    ///< a loss was not finite: the last checkpoint is in place, no step was taken by that loss
+  kNoProgress,  ///< no improvement within patience, after a checkpoint
+  kNotFinite    ///< a loss was not finite: no step was taken by it, the last checkpoint is kept
 };
 
 struct TrainingOutcome {
   TrainingStatus status = TrainingStatus::kNotFinite;
-  std::string message;  ///< unless finished: what ended it, and where
-  int steps = 0;        ///< that the weights have seen
-  double seconds = 0;   ///< of this process
+  std::string message;  ///< unless finished: reason and step
+  int steps = 0;        ///< completed
+  double seconds = 0;   ///< in this process
 };
 
-/// Of a renderer's training.
+/// Outcome of a renderer's training.
 struct RendererTraining : TrainingOutcome {
   std::vector<std::string> losses_off;     ///< "shape: the frames have no labels", …
-  bool perceptual_random_features = true;  ///< no weights were given for the perceptual loss
-  std::string checkpoint;                  ///< the file written, and others beside it
+  bool perceptual_random_features = true;  ///< no weights were provided for the perceptual loss
+  std::string checkpoint;                  ///< path of the file; other files are in its folder
 };
 
 /// run_dir/checkpoint.bin.

@@ -10,14 +10,14 @@
 namespace bodyloom {
 
 Freeze ReadFreeze(const std::string& text, int num_frames) {
-  constexpr int kMost = 100000;
+  constexpr int kMaximum = 100000;
   Freeze freeze;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d:%d%c", &freeze.frame, &freeze.count, &rest) != 2 || freeze.frame < 0 ||
-      freeze.frame >= num_frames || freeze.count < 1 || freeze.count > kMost) {
+      freeze.frame >= num_frames || freeze.count < 1 || freeze.count > kMaximum) {
     throw RequestError(Concatenate("--freeze ", text,
                                    ": expected FRAME:COUNT, such as 40:60; the clip has frames 0 to ", num_frames - 1,
-                                   ", and COUNT is 1 to ", kMost));
+                                   ", and COUNT is 1 to ", kMaximum));
   }
   return freeze;
 }

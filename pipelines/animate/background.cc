@@ -37,21 +37,21 @@ const Image& Background::Next() {
   return image_;
 }
 
-PictureSize SizeOfPictures(const PersonWindow& window, const Camera& camera, bool full_size) {
+ImageSize SizeOfImages(const PersonWindow& window, const Camera& camera, bool full_size) {
   if (full_size) return {camera.width, camera.height};
-  return {window.picture_width, window.picture_height};
+  return {window.image_width, window.image_height};
 }
 
 void Composite(std::span<const float> image, std::span<const float> alpha, const PersonWindow& window, int t,
-               Image* picture) {
+               Image* canvas) {
   const auto area = static_cast<size_t>(window.width) * window.height;
-  const WindowSampler window_at(window, t, picture->width, picture->height);
-  for (int y = 0; y < picture->height; ++y) {
+  const WindowSampler window_at(window, t, canvas->width, canvas->height);
+  for (int y = 0; y < canvas->height; ++y) {
     if (window_at.RowIsOutside(y)) continue;
-    for (int x = 0; x < picture->width; ++x) {
+    for (int x = 0; x < canvas->width; ++x) {
       if (window_at.ColumnIsOutside(x)) continue;
       const float behind = 1 - window_at.At(alpha, x, y);
-      uint8_t* to = picture->pixel(x, y);
+      uint8_t* to = canvas->pixel(x, y);
       for (int c = 0; c < 3; ++c) {
         const float value =
             255 * window_at.At(image.subspan(area * (2 - c), area), x, y) + behind * static_cast<float>(to[c]);
@@ -61,12 +61,11 @@ void Composite(std::span<const float> image, std::span<const float> alpha, const
   }
 }
 
-WindowSampler::WindowSampler(const PersonWindow& window, int t, int picture_width, int picture_height)
+WindowSampler::WindowSampler(const PersonWindow& window, int t, int image_width, int image_height)
     : width_(window.width),
       height_(window.height),
-      columns_(Places(picture_width, static_cast<double>(window.picture_width) / picture_width, window.corner[t].x())),
-      rows_(Places(picture_height, static_cast<double>(window.picture_height) / picture_height, window.corner[t].y())) {
-}
+      columns_(Places(image_width, static_cast<double>(window.image_width) / image_width, window.corner[t].x())),
+      rows_(Places(image_height, static_cast<double>(window.image_height) / image_height, window.corner[t].y())) {}
 
 std::vector<WindowSampler::Between> WindowSampler::Places(int count, double scale, int corner) {
   std::vector<Between> places(count);
@@ -111,21 +110,21 @@ SinglePersonDatasetInfo InfoOf(const Track& track, double fps, bool labels, bool
 
 }  // namespace
 
-PersonFrame SetFrameOf(const MotionPicture& picture, const PersonWindow& window, int t, const Image& composed) {
+PersonFrame SetFrameOf(const MotionImage& image, const PersonWindow& window, int t, const Image& composed) {
   PersonFrame frame;
   frame.rgb = composed;
-  if (!picture.labels.empty()) frame.labels = Image(composed.width, composed.height);
-  if (!picture.normals.empty()) frame.normals = Image(composed.width, composed.height);
+  if (!image.labels.empty()) frame.labels = Image(composed.width, composed.height);
+  if (!image.normals.empty()) frame.normals = Image(composed.width, composed.height);
   const WindowSampler window_at(window, t, composed.width, composed.height);
   const auto area = static_cast<size_t>(window.width) * window.height;
   for (int y = 0; y < composed.height; ++y) {
     for (int x = 0; x < composed.width; ++x) {
       const int nearest = window_at.Nearest(x, y);
       if (nearest < 0) continue;
-      if (!picture.labels.empty()) std::fill_n(frame.labels.pixel(x, y), 3, picture.labels[nearest]);
-      if (picture.normals.empty() || (!picture.labels.empty() && picture.labels[nearest] == 0)) continue;
+      if (!image.labels.empty()) std::fill_n(frame.labels.pixel(x, y), 3, image.labels[nearest]);
+      if (image.normals.empty() || (!image.labels.empty() && image.labels[nearest] == 0)) continue;
       std::array<float, 3> n{};
-      for (size_t k = 0; k < 3; ++k) n[k] = window_at.At(std::span(picture.normals).subspan(area * k, area), x, y);
+      for (size_t k = 0; k < 3; ++k) n[k] = window_at.At(std::span(image.normals).subspan(area * k, area), x, y);
       const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
       if (!(length > 0)) continue;
       for (size_t k = 0; k < 3; ++k) frame.normals.pixel(x, y)[2 - k] = NormalCode(n[k] / length);
@@ -145,8 +144,8 @@ void RenderedDataset::Add(int t, PersonFrame frame) {
   writer_.Write(t, frame);
 }
 
-void RenderedDataset::Add(int t, const MotionPicture& picture, const PersonWindow& window, const Image& composed) {
-  Add(t, SetFrameOf(picture, window, t, composed));
+void RenderedDataset::Add(int t, const MotionImage& image, const PersonWindow& window, const Image& composed) {
+  Add(t, SetFrameOf(image, window, t, composed));
 }
 
 void RenderedDataset::Finish() const { writer_.Finish(); }

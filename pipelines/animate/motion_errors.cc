@@ -55,7 +55,7 @@ std::vector<MotionErrors::Quarter> MotionErrors::Quarters() const {
   std::vector<Quarter> quarters(4);
   for (size_t q = 0; q < 4; ++q) {
     const size_t begin = q * sorted.size() / 4, end = (q + 1) * sorted.size() / 4;
-    quarters[q].least_similarity = sorted[begin].similarity;
+    quarters[q].min_similarity = sorted[begin].similarity;
     quarters[q].frames = static_cast<int>(end - begin);
     for (const auto& [name, value] : kColumns) {
       double sum = 0;
@@ -74,7 +74,7 @@ std::vector<MotionErrors::Quarter> MotionErrors::Quarters() const {
 nlohmann::ordered_json ToJson(const std::vector<MotionErrors::Quarter>& quarters) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const MotionErrors::Quarter& quarter : quarters) {
-    nlohmann::ordered_json row = {{"least_similarity", quarter.least_similarity}};
+    nlohmann::ordered_json row = {{"min_similarity", quarter.min_similarity}};
     for (const auto& [name, value] : kColumns) row[name] = quarter.scores.*value;
     row["frames"] = quarter.frames;
     json.push_back(row);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip's errors by how much each frame's motion is like what was trained on.
+/// Errors of a rendered clip, grouped by the similarity of each frame's motion to the training motion.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,24 +11,24 @@
 
 namespace bodyloom {
 
-/// The error of every frame of a clip beside how much its motion is like what was trained on.
+/// Errors of a clip's frames together with the similarity of their motion to the training motion.
 class MotionErrors {
  public:
   /// `similarity` by frame of the clip (data_tools/evaluation/motion_similarity.h), or empty.
   explicit MotionErrors(std::vector<float> similarity) : similarity_(std::move(similarity)) {}
   void Add(int frame, const MotionFrameScores& scores);
 
-  /// A line a frame: frame, image_l1, ssim, lpips, tlpips, similarity; what was not measured is empty. The file appears
-  /// whole or not at all.
+  /// Writes one line per frame: frame, image_l1, ssim, lpips, tlpips, similarity; values not measured are empty. The
+  /// file is written whole or not at all.
   void WriteCsv(const std::string& path) const;
 
   struct Quarter {
-    double least_similarity = 0;
+    double min_similarity = 0;
     MotionFrameScores scores;  ///< means over the frames where each was measured
     int frames = 0;
   };
-  /// The frames in four parts of equal size, the least similar first; empty without similarities or with fewer than
-  /// four frames.
+  /// Quartiles of the frames by similarity, least similar first; empty without similarities or with fewer than four
+  /// frames.
   [[nodiscard]] std::vector<Quarter> Quarters() const;
 
  private:
@@ -41,13 +41,13 @@ class MotionErrors {
   std::vector<Error> errors_;
 };
 
-/// [{"least_similarity": …, "image_l1": …, "ssim": …, "lpips": …, "tlpips": …, "frames": …}, …]; null: not measured
+/// [{"min_similarity": …, "image_l1": …, "ssim": …, "lpips": …, "tlpips": …, "frames": …}, …]; null: not measured
 nlohmann::ordered_json ToJson(const std::vector<MotionErrors::Quarter>& quarters);
 
-// Scores of a motion-dependent renderer as one line.
+// Scores of the motion-dependent renderer in one line of text.
 
-/// "L1 0.0516, PSNR 20.41 dB, SSIM 0.9312, LPIPS 0.0387, labels IoU 0.847, …": what was not measured (NaN) is left out,
-/// LPIPS of random features is called so. Units as in MotionScores.
+/// "L1 0.0516, PSNR 20.41 dB, SSIM 0.9312, LPIPS 0.0387, labels IoU 0.847, …": values not measured (NaN) are left out,
+/// LPIPS of random features is marked as such. Units as in MotionScores.
 std::string ScoresText(const MotionScores& scores);
 /// The same of single frames' scores or their means.
 std::string ScoresText(const MotionFrameScores& scores, bool lpips_random_features);

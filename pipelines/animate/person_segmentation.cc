@@ -74,10 +74,10 @@ double KeepPerson(std::span<const uint8_t> parts, int size, std::vector<uint8_t>
   return labelled == 0 ? 0 : 1 - static_cast<double>(kept) / static_cast<double>(labelled);
 }
 
-PersonSegmentation SegmentPerson(const Image& window, std::span<const uint8_t> inside_picture,
+PersonSegmentation SegmentPerson(const Image& window, std::span<const uint8_t> inside_image,
                                  std::span<const uint8_t> alpha, std::span<const uint8_t> parts) {
   const int size = window.width;
-  const Box box = BoxOf(inside_picture, size);
+  const Box box = BoxOf(inside_image, size);
   Image cut(box.width(), box.height());
   std::vector<uint8_t> cut_parts;
   for (int y = box.top; y < box.bottom; ++y) {
@@ -116,7 +116,7 @@ double CompositeScore::Sum::Mean() const {
 }
 
 void CompositeScore::Add(int t, const Image& composed) {
-  PersonPictures wanted;
+  RenderedPeople wanted;
   wanted.normals = wanted.iuv = wanted.background = false;
   PersonFrame frame = set_.Read(t, wanted);
   const Image truth = Resized(frame.rgb, width_, height_);

@@ -84,24 +84,24 @@ RelightRequest ReadRelight(const std::string& path) {
   return LowerExtension(path) == ".json" ? ReadJson(path) : ReadEnvironment(path);
 }
 
-void FrameRelighter::Observe(const MotionPicture& picture) {
-  const size_t area = picture.alpha.size();
+void FrameRelighter::Observe(const MotionImage& rendered) {
+  const size_t area = rendered.alpha.size();
   std::vector<size_t> usable;
   for (size_t i = 0; i < area; ++i) {
-    if (picture.alpha[i] >= kOpaque) usable.push_back(i);
+    if (rendered.alpha[i] >= kOpaque) usable.push_back(i);
   }
   const size_t count = std::min<size_t>(usable.size(), kPixelsAFrame);
   for (size_t k = 0; k < count; ++k) {
     const size_t i = usable[k * usable.size() / count];
-    const Vector3d normal(picture.normals[i], picture.normals[area + i], picture.normals[2 * area + i]);
+    const Vector3d normal(rendered.normals[i], rendered.normals[area + i], rendered.normals[2 * area + i]);
     if (!(normal.norm() > 0.5)) continue;
     Vector3d light;
     for (int c = 0; c < 3; ++c) {
-      light[c] = DecodePixel(picture.image[area * c + i] / picture.alpha[i], request_.encoding);
+      light[c] = DecodePixel(rendered.image[area * c + i] / rendered.alpha[i], request_.encoding);
     }
     normals_.push_back(normal);
     light_.push_back(LuminanceOf(light));
-    labels_.push_back(picture.labels.empty() ? 0 : picture.labels[i]);
+    labels_.push_back(rendered.labels.empty() ? 0 : rendered.labels[i]);
   }
 }
 
@@ -114,11 +114,11 @@ void FrameRelighter::Estimate() {
   old_light_ = GreyLight(fit_.coefficients / fit_.summary.mean_shading);
 }
 
-void FrameRelighter::Apply(MotionPicture* picture) const {
-  BODYLOOM_CHECK(!picture->normals.empty(), "relight: the picture has no normals");
+void FrameRelighter::Apply(MotionImage* image) const {
+  BODYLOOM_CHECK(!image->normals.empty(), "relight: the image has no normals");
   RelightOptions options;
   options.encoding = request_.encoding;
-  Relight(old_light_, request_.light, picture->normals, picture->alpha, options, picture->image);
+  Relight(old_light_, request_.light, image->normals, image->alpha, options, image->image);
 }
 
 nlohmann::ordered_json FrameRelighter::Json() const {

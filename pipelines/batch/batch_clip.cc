@@ -66,7 +66,7 @@ ClipStatus StatusFrom(const JsonNode& node) {
   for (size_t i = 0; i < std::size(kClipStatusNames); ++i) {
     if (name == kClipStatusNames[i]) return static_cast<ClipStatus>(i);
   }
-  Refuse(node.place(), "'" + PrintableText(name) + "', expected the status of a clip");
+  ThrowFileError(node.place(), "'" + PrintableText(name) + "', expected the status of a clip");
 }
 
 double NumberOrNan(const JsonNode& node) {
@@ -103,9 +103,9 @@ ClipRecord TrackBatchClip(const BatchClip& clip, const std::string& folder, cons
   try {
     const auto track = record.verb == "track" ? TrackOne : TrackAll;
     track(clip, folder, callbacks, &record);
-  } catch (const NothingToTrack& nothing) {
+  } catch (const NoPersonFound& nothing) {
     for (const fs::directory_entry& left : fs::directory_iterator(folder)) fs::remove_all(left.path());
-    record.status = ClipStatus::kNothingToTrack;
+    record.status = ClipStatus::kNoPersonFound;
     record.reason = nothing.what();
   }
   return record;

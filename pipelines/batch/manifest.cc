@@ -40,23 +40,26 @@ std::string SettingText(const json& value, const std::string& name, const std::s
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
   if (value.is_number()) return value.dump();
   if (!value.is_string()) {
-    Refuse(place, name, std::string("found ") + value.type_name() + ", expected a text, a number, true or false");
+    ThrowFileError(place, name,
+                   std::string("found ") + value.type_name() + ", expected a text, a number, true or false");
   }
   auto text = value.get<std::string>();
-  if (text.empty() || !IsOneLine(text)) Refuse(place, name, "expected a text that is not empty, in one line");
+  if (text.empty() || !IsOneLine(text)) ThrowFileError(place, name, "expected a text that is not empty, in one line");
   return text;
 }
 
 ManifestClip ClipFromLine(const std::string& line, const std::string& place, const std::filesystem::path& folder) {
   const json object = ParseJson(line, place, {.max_bytes = size_t{1} << 20, .max_depth = 2});
-  if (!object.is_object()) Refuse(place, std::string("found ") + object.type_name() + ", expected a JSON object");
+  if (!object.is_object())
+    ThrowFileError(place, std::string("found ") + object.type_name() + ", expected a JSON object");
   ManifestClip clip;
   clip.place = place;
   for (const auto& [name, value] : object.items()) {
-    if (IsIn(kNotOfAClip, name)) Refuse(place, "'" + name + "' is no option of a clip of a batch: leave it out");
+    if (IsIn(kNotOfAClip, name))
+      ThrowFileError(place, "'" + name + "' is no option of a clip of a batch: leave it out");
     const std::string text = SettingText(value, PrintableText(name), place);
     if (name == "id") {
-      if (!value.is_string()) Refuse(place, name, "expected a text");
+      if (!value.is_string()) ThrowFileError(place, name, "expected a text");
       clip.id = text;
     } else if (name == "verb") {
       clip.verb = text;
@@ -65,15 +68,16 @@ ManifestClip ClipFromLine(const std::string& line, const std::string& place, con
     }
   }
   if (!IsClipId(clip.id)) {
-    Refuse(place, (clip.id.empty() ? "no 'id'" : "id '" + PrintableText(clip.id) + "'") +
-                      ", expected 1 to 100 letters, digits, '.', '_' or '-', the first a letter or digit");
+    ThrowFileError(place, (clip.id.empty() ? "no 'id'" : "id '" + PrintableText(clip.id) + "'") +
+                              ", expected 1 to 100 letters, digits, '.', '_' or '-', the first a letter or digit");
   }
   const auto given = [&](const char* name) { return clip.settings.contains(name); };
   const bool observed = given("detections") || given("dense") || given("part-labels");
-  if (!observed && !given("video")) Refuse(place, "no input, expected 'video', 'detections', 'dense' or 'part-labels'");
+  if (!observed && !given("video"))
+    ThrowFileError(place, "no input, expected 'video', 'detections', 'dense' or 'part-labels'");
   if (clip.verb.empty()) clip.verb = observed ? "track" : "run";
   if (clip.verb != "track" && clip.verb != "run") {
-    Refuse(place, "verb '" + PrintableText(clip.verb) + "', expected track or run");
+    ThrowFileError(place, "verb '" + PrintableText(clip.verb) + "', expected track or run");
   }
   return clip;
 }
@@ -97,11 +101,11 @@ std::vector<ManifestClip> ManifestFromText(const std::string& text, const std::s
     for (char& c : id) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     const auto [other, is_new] = line_of.emplace(id, number);
     if (!is_new) {
-      Refuse(clips.back().place, "id '" + clips.back().id + "' is that of line " + std::to_string(other->second) +
-                                     ", expected another one");
+      ThrowFileError(clips.back().place, "id '" + clips.back().id + "' is that of line " +
+                                             std::to_string(other->second) + ", expected another one");
     }
   }
-  if (clips.empty()) Refuse(path, "no clips, expected one JSON object a line");
+  if (clips.empty()) ThrowFileError(path, "no clips, expected one JSON object a line");
   return clips;
 }
 

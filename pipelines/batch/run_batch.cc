@@ -20,13 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kRecordFile = "clip.json";
-constexpr int kMostTableWrites = 3;
+constexpr int kMaxTableWrites = 3;
 
 void MakeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   errno = error.value();
-  if (error) ThrowFileError(folder.string(), "make the folder");
+  if (error) ThrowSystemError(folder.string(), "make the folder");
 }
 
 /// Removed with all that is in it.
@@ -59,7 +59,7 @@ class Batch {
 
   std::map<ClipStatus, int> Run() {
     ParallelFor(static_cast<int>(request_.clips.size()), request_.jobs, [this](int i) {
-      if (!GoesOn(0)) return;
+      if (!ReportProgress(0)) return;
       try {
         const ClipRecord record = RunClip(request_.clips[static_cast<size_t>(i)]);
         const std::lock_guard<std::mutex> hold(mutex_);
@@ -92,17 +92,17 @@ class Batch {
   [[nodiscard]] std::string Failure(const std::string& id) const { return (out_ / "failed" / (id + ".json")).string(); }
   [[nodiscard]] fs::path WorkFolder() const { return out_ / ".work"; }
 
-  bool GoesOn(double fraction_of_clip) {
+  bool ReportProgress(double fraction_of_clip) {
     const std::lock_guard<std::mutex> hold(mutex_);
     const size_t all = request_.clips.size();
     const double whole = (ended_ + fraction_of_clip) / static_cast<double>(all);
-    if (!stopped_by_ && !callbacks_.GoesOn(Concatenate(ended_, " of ", all), whole)) {
+    if (!stopped_by_ && !callbacks_.ReportProgress(Concatenate(ended_, " of ", all), whole)) {
       stopped_by_ = std::make_exception_ptr(Cancelled());
     }
     return !stopped_by_;
   }
 
-  /// What to tell of a clip that an earlier run has done, or another one meanwhile; nothing when none has.
+  /// Record of a clip that an earlier or concurrent run has finished; empty if there is none.
   [[nodiscard]] std::optional<ClipRecord> Done(const std::string& id, const std::string& hash) const {
     ClipRecord record = RecordIn(Record(id), id);
     if (record.hash != hash || hash.empty()) return std::nullopt;
@@ -132,14 +132,14 @@ class Batch {
       MakeFolder(WorkFolder());
       // Another one for each run; '~' is in no id.
       TemporaryFolder temporary{(WorkFolder() / (clip.id + "~XXXXXX")).string()};
-      if (::mkdtemp(temporary.path.data()) == nullptr) ThrowFileError(temporary.path, "make the folder");
+      if (::mkdtemp(temporary.path.data()) == nullptr) ThrowSystemError(temporary.path, "make the folder");
       const std::string finished = temporary.path + "/finished";
       MakeFolder(finished);
       PipelineCallbacks callbacks;
-      callbacks.progress = [this](const std::string&, double fraction) { return GoesOn(fraction); };
+      callbacks.progress = [this](const std::string&, double fraction) { return ReportProgress(fraction); };
       callbacks.message = [&](const std::string& line) {
         const std::lock_guard<std::mutex> hold(mutex_);
-        callbacks_.Say(clip.id + ": " + line);
+        callbacks_.Message(clip.id + ": " + line);
       };
       const Stopwatch watch;
       ClipRecord record = TrackBatchClip(clip, finished, callbacks);
@@ -152,7 +152,7 @@ class Batch {
     } catch (const DiskFullError&) {
       throw;
     } catch (const std::exception& error) {
-      if (!GoesOn(1)) throw;  // what fails upon Ctrl-C is not the clip's fault
+      if (!ReportProgress(1)) throw;  // what fails upon Ctrl-C is not the clip's fault
       if (const std::optional<ClipRecord> done = Done(clip.id, hash)) return *done;  // by a run that has cleared up
       ClipRecord record;
       record.id = clip.id;
@@ -172,7 +172,7 @@ class Batch {
     if (::rename(finished.c_str(), target.c_str()) != 0) {
       if (const std::optional<ClipRecord> first = Done(record.id, record.hash)) return *first;
       ::rename(target.c_str(), replaced.c_str());
-      if (::rename(finished.c_str(), target.c_str()) != 0) ThrowFileError(target, "move the finished folder here");
+      if (::rename(finished.c_str(), target.c_str()) != 0) ThrowSystemError(target, "move the finished folder here");
     }
     ClearUp(record.id);
     return record;
@@ -206,7 +206,7 @@ RunBatchReport RunBatch(const RunBatchRequest& request, const PipelineCallbacks&
   std::string table = batch.Table(), written = fs::exists(path) ? ReadFileBytes(path) : "";
   if (!table.empty()) report.table = path;
   // Read again once it is written: another run may have put a clip into place meanwhile, and its table before this one.
-  for (int i = 0; i < kMostTableWrites && !table.empty() && table != written; ++i) {
+  for (int i = 0; i < kMaxTableWrites && !table.empty() && table != written; ++i) {
     WriteFileAtomically(path, table);
     written = table;
     table = batch.Table();

@@ -100,10 +100,11 @@ std::string JointOfFace(const BodyModel& body, int face) {
 std::string MostCrossed(const BodyModel& body, const std::vector<std::array<int, 2>>& pairs) {
   std::map<std::pair<std::string, std::string>, int> counts;
   for (const auto& [a, b] : pairs) ++counts[std::minmax(JointOfFace(body, a), JointOfFace(body, b))];
-  const auto most =
+  const auto maximum =
       std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most->first.first == most->first.second ? "within " + most->first.first
-                                                 : "between " + most->first.first + " and " + most->first.second;
+  return maximum->first.first == maximum->first.second
+             ? "within " + maximum->first.first
+             : "between " + maximum->first.first + " and " + maximum->first.second;
 }
 
 /// The faces that cross each other, without those that CheckMesh calls superfluous.
@@ -178,7 +179,7 @@ std::string TableOf(const std::vector<BodyFinding>& findings) {
   return text;
 }
 
-/// What was mended, and why some was not.
+/// Text of the repairs, and of the reasons why some faults remain.
 std::string RepairText(const RepairBodySummary& repair) {
   std::string text = "mended: ";
   std::string separator;

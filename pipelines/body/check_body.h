@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is wrong with a body's mesh, at rest and in the poses of a track, and a copy with what can be mended mended.
+/// Finds faults of a body's mesh, at rest and in the poses of a track, and writes a repaired copy.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace bodyloom {
 
-/// Pairs of faces that cross each other, faces that share a corner too where they cross elsewhere. No face names a
-/// vertex twice, no two have the same vertices.
+/// Finds pairs of intersecting faces, including faces that share a corner and also intersect elsewhere. No face names a
+/// vertex twice, and no two faces have the same vertices.
 using FindCrossingFaces =
     std::function<std::vector<std::array<int, 2>>(const MatrixX3d& vertices, const MatrixX3i& faces)>;
 
-/// What the libraries do not know of surfaces, and a program that is linked with CGAL does. Empty: not done.
+/// Surface algorithms supplied by programs that are linked with CGAL. Empty functions: the checks are skipped.
 struct SurfaceTools {
   FindCrossingFaces crossing;
   FindHoleFaces hole_faces;
@@ -26,9 +26,9 @@ struct SurfaceTools {
 
 struct CheckBodyRequest {
   std::string body;           ///< empty: the built-in body
-  std::string track, frames;  ///< poses to look for crossing faces in (FrameRange); empty: none, all frames
-  std::string repair;         ///< the mended body, compact .npz; empty: not written
-  double same_place_mm = 0;   ///< vertices no further apart are one place
+  std::string track, frames;  ///< poses to check for crossing faces (FrameRange); empty: none, all frames
+  std::string repair;         ///< the repaired body, compact .npz; empty: not written
+  double same_place_mm = 0;   ///< vertices within this distance coincide
   int max_hole_edges = 100;   ///< of holes that `repair` fills
   SurfaceTools surface_tools;
 };
@@ -43,23 +43,24 @@ struct BodyFinding {
 struct CheckBodyReport {
   std::string description;  ///< the mesh in a line
   std::vector<BodyFinding> findings;
-  bool crossing_checked = false;  ///< whether crossing faces were looked for
-  bool could_fill_holes = false;  ///< whether there was what fills holes
+  bool crossing_checked = false;  ///< true if checked for crossing faces
+  bool could_fill_holes = false;  ///< true if SurfaceTools::hole_faces was given
   int poses_checked = 0;
   bool repaired = false;
   RepairBodySummary repair;
-  std::vector<BodyFinding> left;  ///< of the mended body
+  std::vector<BodyFinding> left;  ///< faults of the repaired body
   std::string out;
 
-  /// Findings of the body that a user goes on with: the mended one where there is one.
+  /// Faults of the resulting body: the repaired one if there is one.
   [[nodiscard]] const std::vector<BodyFinding>& remaining() const { return repaired ? left : findings; }
 };
 
-/// Crossing faces are looked for in the mended body where there is one. Throws RequestError for a track without
-/// what finds them, or a file both read and written; std::runtime_error naming a file that cannot be used; Cancelled.
+/// Checks the body; crossing faces are checked in the repaired body if there is one. Throws RequestError for a track
+/// without SurfaceTools::crossing, or a file both read and written; std::runtime_error naming a file that cannot be
+/// used; Cancelled.
 CheckBodyReport CheckBody(const CheckBodyRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// A line a finding, or "nothing found"; then what was mended and what is left.
+/// One line per fault, or "nothing found"; then the repairs and the remaining faults.
 std::string ToText(const CheckBodyReport& report);
 
 }  // namespace bodyloom

@@ -21,8 +21,8 @@ ConvertBodyReport ConvertBody(const ConvertBodyRequest& request, const PipelineC
   }
   if (!request.parts.empty()) {
     const PartsSummary parts = PartsFromUvProcessedMat(request.parts, &body);
-    callbacks.Say(std::to_string(parts.faces_with_part) + " faces have a part, " +
-                  std::to_string(parts.faces_without_part) + " have none");
+    callbacks.Message(std::to_string(parts.faces_with_part) + " faces have a part, " +
+                      std::to_string(parts.faces_without_part) + " have none");
   }
   SaveBodyCompact(request.out, body);
   return {DescribeBody(BodyModel(std::move(body))), request.out};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any readable body as one compact file, with texture coordinates and parts from other files if wanted.
+/// Converts any readable body to one compact file, optionally with texture coordinates and parts from other files.
 #pragma once
 
 #include <string>
@@ -23,11 +23,11 @@ struct ConvertBodyReport {
   std::string out;
 };
 
-/// Says how many faces have a part when parts were given. Throws std::runtime_error naming a file that cannot be used,
-/// RequestError for a file both read and written, Cancelled.
+/// Converts the body; the description includes the number of faces with a part if parts were given. Throws
+/// std::runtime_error naming a file that cannot be used, RequestError for a file both read and written, Cancelled.
 ConvertBodyReport ConvertBody(const ConvertBodyRequest& request, const PipelineCallbacks& callbacks = {});
 
-// The built-in body as a file, built from its cage (data_tools/body_making/make_builtin_body.h).
+// Building of the built-in body from its cage (data_tools/body_making/make_builtin_body.h).
 
 struct BuildBuiltinBodyRequest {
   std::string cage, parts;  ///< another cage, with weights, shapes and charts on it; both or neither
@@ -40,8 +40,8 @@ struct BuildBuiltinBodyReport {
   std::string out;
 };
 
-/// Throws std::runtime_error naming a file that cannot be used, RequestError for a file both read and written,
-/// Cancelled.
+/// Builds and writes the body. Throws std::runtime_error naming a file that cannot be used, RequestError for a file
+/// both read and written, Cancelled.
 BuildBuiltinBodyReport BuildBuiltinBody(const BuildBuiltinBodyRequest& request,
                                         const PipelineCallbacks& callbacks = {});
 

@@ -22,9 +22,9 @@ Image VideoStills(const std::string& path) {
   std::vector<Image> stills;
   for (const int frame : frames) {
     reader.Skip(frame - reader.next_frame());
-    Image picture;
-    if (reader.Read(&picture)) {
-      stills.push_back(std::move(picture));
+    Image image;
+    if (reader.Read(&image)) {
+      stills.push_back(std::move(image));
     }
   }
   ContactSheetOptions options;
@@ -64,8 +64,8 @@ std::string DemoPage(const DemoPageContent& content) {
        {Fixed(evaluation.Value("pa_mpjpe_mm"), 1) + " mm", "joint error after one similarity a frame"},
        {Fixed(report.total_seconds, 1) + " s", "for everything, overlay video included"}});
   page.AddHeading("What it looks like");
-  page.AddPicture(
-      content.picture_jpeg, "image/jpeg",
+  page.AddImage(
+      content.image_jpeg, "image/jpeg",
       "Left: the estimated body over the clip. Right: from its side, where errors in depth show, the estimate "
       "beside the truth.");
   page.AddVideo(content.overlay, "The whole clip: " + content.overlay);

@@ -60,25 +60,25 @@ DemoReport RunDemo(const DemoRequest& request, const PipelineCallbacks& callback
   const std::filesystem::path folder = request.out;
   RequireWritableFolder(request.out);
 
-  callbacks.Say("1. A clip with known truth: the built-in body walks, turns, waves and kicks.");
+  callbacks.Message("1. A clip with known truth: the built-in body walks, turns, waves and kicks.");
   const SynthClipFiles files = SynthesizeClip(SynthesisStep(request), callbacks).files;
 
-  callbacks.Say("2. The tracker sees 2D joints and dense keypoints, with the faults that detectors have.");
+  callbacks.Message("2. The tracker sees 2D joints and dense keypoints, with the faults that detectors have.");
   const TrackRequest track_step = TrackStep(request, files);
   DemoPageContent content;
   content.report = TrackClip(track_step, callbacks);
 
-  callbacks.Say("3. The estimate against the truth.");
-  callbacks.Say("");
+  callbacks.Message("3. The estimate against the truth.");
+  callbacks.Message("");
   const Track track = ReadTrack(track_step.out), truth = ReadTrack(files.truth);
   content.evaluation = EvaluateAgainstTruth(track, truth, BuiltinBody());
   WriteFileAtomically((folder / "evaluation.json").string(), EvaluationJson(content.evaluation));
   content.times_s = track.motion.timestamps;
   content.error_mm = JointErrorByFrameMm(track, truth);
   content.overlay = std::filesystem::path(track_step.overlay).filename().string();
-  const std::string picture = (folder / "overlay.jpg").string();
-  WriteImage(picture, VideoStills(track_step.overlay));
-  content.picture_jpeg = ReadFileBytes(picture);
+  const std::string image = (folder / "overlay.jpg").string();
+  WriteImage(image, VideoStills(track_step.overlay));
+  content.image_jpeg = ReadFileBytes(image);
   content.commands = CommandLines(request, files, track_step);
   DemoReport report;
   report.page = (folder / "summary.html").string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The demo: a clip is made, tracked, evaluated and shown on one page.
+/// The demo: synthesises a clip, tracks it, evaluates the track and shows the result on one page.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,11 @@ struct DemoReport {
   std::string page, overlay_path, track_path;  ///< files written: summary.html, overlay.mp4, track.npz
 };
 
-/// Takes the very steps that its page lists as command lines: synth, track, evaluate. Says what each step does. Throws
+/// Runs the steps that the page lists as command lines: synth, track, evaluate. Reports each step. Throws
 /// std::runtime_error naming a file that cannot be used, Cancelled.
 DemoReport RunDemo(const DemoRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// The closing words: how it went, how well, and what to look at.
+/// Closing text: outcome, accuracy, and the files to look at.
 std::string ToText(const DemoReport& report);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A track's surface motion as UV maps in a file: normals and velocities (data_tools/descriptors/describe_track.h).
+/// Writes a track's surface motion as UV maps of normals and velocities (data_tools/descriptors/describe_track.h).
 #pragma once
 
 #include <cstddef>
@@ -31,19 +31,19 @@ struct DescribeClipReport {
   size_t peak_memory_bytes = 0;
 };
 
-/// Describes every frame of the track and writes the maps, their header, and what else was requested. Throws
-/// RequestError for options that contradict each other, std::runtime_error naming a file that cannot be used, or a
-/// track that is not this body's, and Cancelled. Nothing is left behind then.
+/// Describes every frame of the track and writes the maps, their header, and the other requested files. Throws
+/// RequestError for contradictory options, std::runtime_error naming a file that cannot be used or a track of another
+/// body, and Cancelled; no files are left then.
 DescribeClipReport DescribeClip(const DescribeClipRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// Counts, times and memory: some lines for a reader, the last one with a newline.
+/// Counts, times and memory: several lines of text ending in a newline.
 std::string ToText(const DescribeClipReport& report);
 /// The same as one JSON object.
 std::string ToJson(const DescribeClipReport& report);
 
-/// The camera's pose for SurfaceFrame::kWorld: that of `view` in the camera file; without one that of the world of
-/// the file `track` (geometry/scene/world_frame.h), or a level camera when it does not say or there is none. Other axes
-/// need none. Throws RequestError for a camera file with other axes, std::runtime_error for one that cannot be used.
+/// Sets the camera's pose for SurfaceFrame::kWorld: that of `view` in the camera file; without one, that of the world
+/// in the file `track` (geometry/scene/world_frame.h), or a level camera if neither gives one. Other frames need no
+/// pose. Throws RequestError for a camera file given with other frames, std::runtime_error for one that cannot be used.
 void SetAxesPose(const std::string& cameras, const std::string& view, const std::string& track, SurfaceMotion* motion);
 
 }  // namespace bodyloom

@@ -16,9 +16,9 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kFewestFrames = 12, kMostSamples = 32;
+constexpr int kFewestFrames = 12, kMaxSamples = 32;
 constexpr int64_t kSampleBytes = 256 << 20;
-constexpr double kMostLeft = 0.2;
+constexpr double kMaxLeft = 0.2;
 constexpr double kAround = 0.04;  ///< of the longer side of a mask's rectangle: what it may have left out
 
 /// Adds what lies within a square of `margin` pixels around a pixel of the mask.
@@ -47,39 +47,41 @@ class MaskCutter {
     cut_ = clip_->masks;
     CutAll();
     // Now this way, now that: worse than coarse ones throughout.
-    if (double(std::count(left_.begin(), left_.end(), 1)) > kMostLeft * num_frames_) return false;
+    if (double(std::count(left_.begin(), left_.end(), 1)) > kMaxLeft * num_frames_) return false;
     clip_->masks = std::move(cut_);
     return true;
   }
 
  private:
-  /// One pass: some pictures, the background behind all people in them, and every linked person's colours.
+  /// One pass that collects sample images and each linked person's colours, and estimates the background behind the
+  /// people.
   void LearnBackground() {
     const int64_t bytes = int64_t{4} * width_ * height_;
-    const int most = static_cast<int>(std::clamp<int64_t>(kSampleBytes / std::max<int64_t>(1, bytes), 9, kMostSamples));
-    const int samples = std::min(most, num_frames_);
-    std::vector<CoveredPicture> pictures;
+    const int maximum =
+        static_cast<int>(std::clamp<int64_t>(kSampleBytes / std::max<int64_t>(1, bytes), 9, kMaxSamples));
+    const int samples = std::min(maximum, num_frames_);
+    std::vector<CoveredImage> images;
     FrameSource source(request_.video, request_.span);
     Image frame;
     double time = 0;
     for (int t = 0; t < num_frames_ && source.Read(&frame, &time); ++t) {
       callbacks_.Update("background", t / double(num_frames_));
       const std::vector<PackedLabels>& masks = clip_->masks[t];
-      const bool is_due = int64_t{t} * samples / num_frames_ >= int64_t(pictures.size());
+      const bool is_due = int64_t{t} * samples / num_frames_ >= int64_t(images.size());
       // Of a frame that was not detected nobody knows where people are.
       if (!is_due || std::any_of(masks.begin(), masks.end(), [](const auto& mask) { return mask.empty(); })) continue;
-      CoveredPicture& seen = pictures.emplace_back();
-      seen.picture = std::exchange(frame, {});
+      CoveredImage& seen = images.emplace_back();
+      seen.image = std::exchange(frame, {});
       seen.covered.assign(size_t(width_) * height_, 0);
       for (const PackedLabels& packed : masks) {
         const LabelImage mask = packed.Unpacked();
         std::vector<uint8_t> whole = mask.Over(width_, height_);
-        AddClearInside(seen.picture, whole, &person_);
+        AddClearInside(seen.image, whole, &person_);
         const int margin = 1 + static_cast<int>(kAround * std::max(mask.width, mask.height));
         Cover(&whole, width_, height_, margin, &seen.covered);
       }
     }
-    background_ = FindStillBackground(pictures, {.num_threads = threads_});
+    background_ = FindStillBackground(images, {.num_threads = threads_});
   }
 
   void CutAll() {
@@ -100,7 +102,7 @@ class MaskCutter {
   }
 
   /// False when somebody's mask is as it was.
-  bool CutFrame(const Image& picture, std::vector<PackedLabels>* masks) const {
+  bool CutFrame(const Image& image, std::vector<PackedLabels>* masks) const {
     bool all = true;
     std::vector<std::vector<uint8_t>> coarse;
     std::vector<uint8_t> everybody(size_t(width_) * height_, 0);
@@ -109,7 +111,7 @@ class MaskCutter {
       for (size_t p = 0; p < everybody.size(); ++p) everybody[p] |= coarse.back()[p];
     }
     for (size_t i = 0; i < masks->size(); ++i) {
-      const auto cut = CutFromBackground(picture, coarse[i], everybody, *background_, person_);
+      const auto cut = CutFromBackground(image, coarse[i], everybody, *background_, person_);
       all = all && cut.has_value();
       if (cut) (*masks)[i] = *cut;
     }

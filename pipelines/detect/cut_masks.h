@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Masks of a clip whose camera stands still, cut anew from what stands behind the people
+/// Refines the masks of a clip from a static camera by segmentation against the estimated background
 /// (tracking/detection/background_cut.h).
 #pragma once
 
@@ -8,15 +8,15 @@
 
 namespace bodyloom {
 
-/// Cuts all masks of `clip`, which DetectPeople() found by this request, in two more passes through the video. False,
-/// and masks as they were, where nothing can be gained: no masks, fewer than a dozen frames, a camera that moves, or
-/// people who cover half of the picture all the time. A frame in which the background cannot be recognised keeps its
-/// masks; more than a fifth of such frames, and all masks stay. Frames are cut side by side; masks do not depend on
-/// `threads` (0: all cores). Throws std::runtime_error naming a video that cannot be read again, Cancelled.
+/// Refines all masks of `clip`, the result of DetectPeople() for this request, in two more passes through the video.
+/// Returns false and leaves the masks unchanged if refinement is not possible: no masks, fewer than a dozen frames, a
+/// moving camera, or people who always cover half of the image. Frames whose background cannot be recognised keep their
+/// masks; if they are more than a fifth, all masks are kept. Frames are processed in parallel; the result does not
+/// depend on `threads` (0: all cores). Throws std::runtime_error naming a video that cannot be read again, Cancelled.
 bool CutMasks(const DetectPeopleRequest& request, int threads, DetectedClip* clip,
               const PipelineCallbacks& callbacks = {});
 
-/// What CutMasks() did, for a reader.
+/// Text that says whether CutMasks() refined the masks.
 const char* MasksText(bool cut);
 
 }  // namespace bodyloom

@@ -72,7 +72,7 @@ DetectedClip DetectLandmarks(const DetectClipRequest& request, const PipelineCal
   report->height = clip.people.image_height;
   report->frames = int(clip.people.frames.size());
   if (found.people.empty()) {
-    throw NothingToTrack(Concatenate(detect.video, ": nobody was found in ", report->frames, " frames"));
+    throw NoPersonFound(Concatenate(detect.video, ": nobody was found in ", report->frames, " frames"));
   }
   if (!request.mask.empty()) {
     clock->Begin("masks");
@@ -104,14 +104,14 @@ nlohmann::ordered_json PeopleJson(const std::vector<FoundPerson>& people) {
 
 std::string ToText(const std::vector<FoundPerson>& people) {
   std::string text;
-  constexpr size_t kMostShown = 10;
-  for (size_t i = 0; i < std::min(kMostShown, people.size()); ++i) {
+  constexpr size_t kMaxShown = 10;
+  for (size_t i = 0; i < std::min(kMaxShown, people.size()); ++i) {
     const FoundPerson& person = people[i];
     text += Concatenate("person ", i, " ", person.frames, " frames, ", Fixed(person.first_s, 2), " to ",
                         Fixed(person.last_s, 2), " s, ", Fixed(person.height_px, 0), " px tall, ",
                         Fixed(100 * person.visible, 0), " % of the landmarks visible\n");
   }
-  if (people.size() > kMostShown) text += Concatenate("and ", people.size() - kMostShown, " more\n");
+  if (people.size() > kMaxShown) text += Concatenate("and ", people.size() - kMaxShown, " more\n");
   return text;
 }
 

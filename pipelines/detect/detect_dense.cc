@@ -14,9 +14,9 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kPicturesAhead = 2;
+constexpr size_t kImagesAhead = 2;
 
-/// A detection without its picture: its box, and the keypoints that were sampled from it.
+/// A detection without its maps: its box, and the keypoints sampled from it.
 struct FoundCharts {
   ChartDetection box;
   std::vector<DenseKeypoint> points;
@@ -29,8 +29,8 @@ struct FoundClip {
   int width = 0, height = 0;
 };
 
-struct TimedPicture {
-  Image picture;
+struct TimedImage {
+  Image image;
   double time_s = 0;
 };
 
@@ -42,18 +42,18 @@ FoundClip FindCharts(const DetectDenseRequest& request, const ChartDetector& det
   clip.width = source.info().width;
   clip.height = source.info().height;
   const int num_frames = source.num_frames();
-  // Decoding is endless as far as the prefetcher knows: an empty picture is the end.
-  Prefetcher<TimedPicture> frames(
+  // The prefetcher has no notion of an end, so an empty image marks it.
+  Prefetcher<TimedImage> frames(
       std::numeric_limits<int64_t>::max(),
       [&](int64_t) {
-        TimedPicture frame;
-        if (!source.Read(&frame.picture, &frame.time_s)) frame.picture = Image();
+        TimedImage frame;
+        if (!source.Read(&frame.image, &frame.time_s)) frame.image = Image();
         return frame;
       },
-      kPicturesAhead);
-  for (TimedPicture frame = frames.Take(); !frame.picture.empty(); frame = frames.Take()) {
+      kImagesAhead);
+  for (TimedImage frame = frames.Take(); !frame.image.empty(); frame = frames.Take()) {
     std::vector<FoundCharts>& found = clip.frames.emplace_back();
-    for (ChartDetection& detection : detector(frame.picture)) {
+    for (ChartDetection& detection : detector(frame.image)) {
       std::vector<DenseKeypoint> points = IuvToDense(detection.charts, charts, request.sampling);
       detection.charts = {};
       if (!points.empty()) found.push_back({std::move(detection), std::move(points)});
@@ -65,7 +65,7 @@ FoundClip FindCharts(const DetectDenseRequest& request, const ChartDetector& det
     throw RequestError(Concatenate(request.video, ": no frame from second ", request.span.from_s, " on"));
   }
   // The video's end has been taken, so the other thread reads no more of it.
-  if (const std::string warning = source.warning(); !warning.empty()) callbacks.Say(warning);
+  if (const std::string warning = source.warning(); !warning.empty()) callbacks.Message(warning);
   return clip;
 }
 
@@ -104,13 +104,13 @@ double Overlap(const ChartDetection& a, const ChartDetection& b) {
 /// Of a frame's detections the one that overlaps `chosen` most and nobody else more; −1 when there is none.
 int DetectionOf(size_t chosen, const std::vector<DetectedPerson>& people, const std::vector<FoundCharts>& found) {
   int best = -1;
-  double most = 0;
+  double maximum = 0;
   for (size_t d = 0; d < found.size(); ++d) {
     std::vector<double> overlaps;
     overlaps.reserve(people.size());
     for (const DetectedPerson& person : people) overlaps.push_back(Overlap(RectangleOf(person), found[d].box));
     const bool is_theirs = overlaps[chosen] == *std::max_element(overlaps.begin(), overlaps.end());
-    if (is_theirs && overlaps[chosen] > most) most = overlaps[chosen], best = int(d);
+    if (is_theirs && overlaps[chosen] > maximum) maximum = overlaps[chosen], best = int(d);
   }
   return best;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One person's dense keypoints through a video, by a detector that the caller brings (DensePose, for one:
+/// Detects one person's dense keypoints in a video, by a detector that the caller provides (such as DensePose,
 /// pipelines/neural/densepose_detector.h).
 #pragma once
 
@@ -18,8 +18,8 @@
 
 namespace bodyloom {
 
-/// Everybody in a picture. Called by one thread at a time.
-using ChartDetector = std::function<std::vector<ChartDetection>(const Image& picture)>;
+/// Detects everybody in an image. Called by one thread at a time.
+using ChartDetector = std::function<std::vector<ChartDetection>(const Image& image)>;
 
 struct DetectDenseRequest {
   std::string video;  ///< the video, or a folder of images
@@ -29,16 +29,16 @@ struct DetectDenseRequest {
 };
 
 struct DetectedDense {
-  DenseSequence dense;  ///< noise as that of DensePose images (iuv_to_dense.h)
-  int people = 0;       ///< found in the whole clip; those of `landmarks` when they were given
+  DenseSequence dense;  ///< noise of DensePose images (iuv_to_dense.h)
+  int people = 0;       ///< number found in the clip; those of `landmarks` if given
   int frames_seen = 0;  ///< frames in which the person was seen
 };
 
-/// Dense keypoints of one person on the faces of `body`. Without `landmarks` the detections' boxes are joined into
-/// people (LinkPeople) and one of them chosen. With `landmarks`, everybody's in the very frames of the span, the person
-/// is PersonOf() those; a detection belongs to the person whose landmarks' rectangle it overlaps most (intersection
-/// over union), and of several that belong to the chosen one the one with most overlap is taken.
-/// Throws std::runtime_error when the video cannot be used, nobody was found or there are not that many people;
+/// Dense keypoints of one person on the faces of `body`. Without `landmarks` the boxes of the detections are linked to
+/// people (LinkPeople) and one of them is selected. With `landmarks` of everybody in exactly the frames of the span,
+/// the person is selected by PersonOf(); each detection is assigned to the person whose bounding box of landmarks has
+/// the largest IoU with it, and of several detections assigned to the selected person the one with the largest IoU is
+/// used. Throws std::runtime_error when the video cannot be used, nobody was found or there are not that many people;
 /// RequestError for a span that holds no frame; std::invalid_argument when the body has no charts; Cancelled.
 DetectedDense DetectDense(const DetectDenseRequest& request, const ChartDetector& detector, const BodyModel& body,
                           const PeopleSequence* landmarks = nullptr, const PipelineCallbacks& callbacks = {});

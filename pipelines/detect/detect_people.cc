@@ -46,7 +46,7 @@ class ClipDetector {
   ClipDetector(const DetectPeopleRequest& request, double fps, DetectedClip* clip)
       : detector_(MakeFrameDetector(request.detector)),
         rate_(request.detect_rate),
-        most_((rate_ > 0 ? std::min(rate_, fps) : fps) < kSlowFps ? 1 : FrameDetector::kFramesAtOnce),
+        maximum_((rate_ > 0 ? std::min(rate_, fps) : fps) < kSlowFps ? 1 : FrameDetector::kFramesAtOnce),
         with_masks_(request.detector.blazepose.masks),
         clip_(clip) {
     clip->people.convention = detector_->convention();
@@ -65,7 +65,7 @@ class ClipDetector {
     skipped_ = {};
     due_s_ = rate_ > 0 ? frame.time_s + 1 / rate_ : frame.time_s;
     Take(std::move(frame.image));
-    if (int(waiting_.size()) == most_) Detect();
+    if (int(waiting_.size()) == maximum_) Detect();
   }
 
   /// After the last frame, which is detected in any case.
@@ -111,7 +111,7 @@ class ClipDetector {
 
   std::unique_ptr<FrameDetector> detector_;
   double rate_;
-  int most_;
+  int maximum_;
   bool with_masks_;
   DetectedClip* clip_;
   std::vector<char> detected_;
@@ -143,7 +143,7 @@ DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCall
   clip.people.image_height = source.info().height;
   const int num_frames = source.num_frames();
   ClipDetector detector(request, source.fps(), &clip);
-  // Decoding is endless as far as the prefetcher knows: an empty picture is the end.
+  // The prefetcher has no notion of an end, so an empty image marks it.
   Prefetcher<TimedFrame> frames(
       std::numeric_limits<int64_t>::max(), [&](int64_t) { return NextFrame(&source); }, kFramesAhead);
   for (TimedFrame frame = frames.Take(); !frame.image.empty(); frame = frames.Take()) {
@@ -155,7 +155,7 @@ DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCall
   }
   detector.Finish();
   // The video's end has been taken, so the other thread reads no more of it.
-  if (const std::string warning = source.warning(); !warning.empty()) callbacks.Say(warning);
+  if (const std::string warning = source.warning(); !warning.empty()) callbacks.Message(warning);
   return clip;
 }
 

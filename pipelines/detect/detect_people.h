@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everybody in a video, in memory: frames are decoded by one thread while people are detected by others.
+/// Detects everybody in a video, in memory: one thread decodes frames while others detect people.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@
 
 namespace bodyloom {
 
-// The frames of a span of a video, one after the other, each with the second at which it is shown.
+// Source of the frames of a video's span in order, with their times in seconds.
 
 struct FrameSpan {
-  double fps = 0;                ///< of a folder of images, or a video that does not say; 0: 30
+  double fps = 0;                ///< for a folder of images or a video without a rate; 0: 30
   double from_s = 0, to_s = -1;  ///< seconds from the first frame, both included; to_s < 0: to the end
 };
 
@@ -27,18 +27,18 @@ class FrameSource {
   FrameSource(const std::string& video, const FrameSpan& span);
 
   [[nodiscard]] const VideoInfo& info() const { return reader_.info(); }
-  /// About how many frames there are; 0 when the video does not say how long it is.
+  /// Approximate number of frames; 0 if the video's length is unknown.
   [[nodiscard]] int num_frames() const;
-  /// Frames a second: the video's, else the span's, else 30.
+  /// Frame rate: the video's, else the span's, else 30.
   [[nodiscard]] double fps() const { return fps_; }
-  /// False at the end. Another thread may read than made the source, one at a time.
+  /// Reads the next frame; returns false at the end. May be called by any one thread at a time.
   bool Read(Image* frame, double* time_s);
-  /// What was wrong with the video; not while another thread reads.
+  /// Warning about the video; must not be called while another thread reads.
   [[nodiscard]] std::string warning() const { return reader_.warning(); }
 
  private:
   VideoReader reader_;
-  bool has_clock_;  ///< a folder of images has none
+  bool has_clock_;  ///< false for a folder of images
   bool at_end_ = false;
   double to_s_, fps_;
   int first_ = 0;
@@ -48,8 +48,8 @@ struct DetectPeopleRequest {
   std::string video;  ///< the video, or a folder of images
   FrameSpan span;
   FrameDetectorOptions detector;
-  /// Frames a second that are detected while everybody moves slowly; those between are filled in (FillBetween()),
-  /// without masks. 0: all.
+  /// Detection rate while everybody moves slowly, frames per second; other frames are interpolated (FillBetween()),
+  /// without masks. 0: all frames.
   double detect_rate = 0;
 };
 
@@ -59,13 +59,14 @@ struct DetectedClip {
   PeopleDetectorSummary detector;
 };
 
-/// Throws RequestError when the ONNX files of a detector contradict each other or are not there.
+/// Throws RequestError when the detector's ONNX files contradict each other or are missing.
 void RequirePoseModels(const FrameDetectorOptions& detector);
 
-/// Throws std::runtime_error naming a file that cannot be used, RequestError for a span that holds no frame, Cancelled.
+/// Detects people in all frames. Throws std::runtime_error naming a file that cannot be used, RequestError for an empty
+/// span, Cancelled.
 DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// One of the clip's people (PersonOf()) as a mask; frames without that person are empty. Throws std::invalid_argument
+/// Mask of one of the clip's people (PersonOf()); empty in frames without that person. Throws std::invalid_argument
 /// when the clip has no masks.
 PartLabelSequence MaskOfPerson(const DetectedClip& clip, const PersonTrack& person);
 

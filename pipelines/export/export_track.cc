@@ -55,7 +55,7 @@ std::string ObjText(const MatrixX3d& vertices, const BodyModelData& body) {
   return text;
 }
 
-/// What is written; borrowed.
+/// Inputs of an export; borrowed.
 struct ExportInputs {
   const BodyModel* body = nullptr;
   std::vector<const Track*> tracks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Tracks in another form: for animation programs, game engines, biomechanics, reconstruction, and plain arrays.
+/// Exports tracks to formats of animation programs, game engines, biomechanics and reconstruction, and to plain arrays.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@
 
 namespace bodyloom {
 
-/// What is written: in the clip's world (geometry/scene/world_frame.h: metres, y up, ground at y = 0), unless stated
-/// otherwise.
+/// Output format. Coordinates are in the clip's world (geometry/scene/world_frame.h: metres, y up, ground at y = 0)
+/// unless stated otherwise.
 enum class TrackForm {
   kVertices,  ///< .npy, frames x vertices x 3, float32; lost frames are NaN; the request's axes
   kJoints,    ///< .npy, frames x joints x 3, float64; lost frames are NaN; the request's axes
@@ -56,15 +56,15 @@ struct ExportTrackReport {
   double seconds = 0;
 };
 
-/// What was written, in which world, how exact: some lines, the last one with a newline.
+/// Text of the files, their world and its accuracy; several lines ending in a newline.
 std::string ToText(const ExportTrackReport& report);
 
-/// Throws std::runtime_error naming a file that cannot be used, a frame that a track lacks or has lost, or a body that
-/// is not the track's; RequestError for a file both read and written, and for options or tracks that the form does not
-/// take; Cancelled.
+/// Exports the tracks. Throws std::runtime_error naming a file that cannot be used, a frame that a track lacks or has
+/// lost, or a body that is not the track's; RequestError for a file both read and written, and for options or tracks
+/// not supported by the form; Cancelled.
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// The same for tracks in memory and their body; request.tracks has a name for each of them in messages.
+/// The same for tracks in memory and their body; request.tracks holds their names for messages.
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const BodyModel& body,
                               const std::vector<const Track*>& tracks, const PipelineCallbacks& callbacks = {});
 

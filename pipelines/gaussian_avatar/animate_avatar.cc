@@ -56,13 +56,13 @@ class AvatarAnimation {
     if (request_.track.empty() && request_.data.empty()) throw RequestError("expected --track or --data");
     const bool turned = !request_.view_yaw.empty() || !request_.freeze.empty() || request_.size > 0;
     if (!request_.data.empty() && turned) {
-      throw RequestError("--data compares with its pictures: not with --view-yaw, --freeze or --size");
+      throw RequestError("--data compares with its images: not with --view-yaw, --freeze or --size");
     }
     if (!request_.report.empty() && !request_.view_yaw.empty()) {
       throw RequestError("--report turns by hand: not with --view-yaw");
     }
     if (!request_.set.empty() && turned) {
-      throw RequestError("--set writes the track beside the pictures: not with --view-yaw, --freeze or --size");
+      throw RequestError("--set writes the track beside the images: not with --view-yaw, --freeze or --size");
     }
     if (!request_.mask.empty() && request_.data.empty()) throw RequestError("--mask goes with --data");
     for (const std::string& path : OutputFiles()) RequireWritable(path);
@@ -86,7 +86,7 @@ class AvatarAnimation {
     if (!request_.data.empty()) {
       clip_.emplace(AvatarClipRequest{request_.data, request_.track, request_.mask, request_.body, threads_});
       motion.track = clip_->track();
-      motion.keeps_shape = true;  // the person's pictures come with their own
+      motion.keeps_shape = true;  // the person's images come with their own
     } else {
       motion.track = request_.motion != nullptr ? *request_.motion : ReadTrack(request_.track);
     }
@@ -139,9 +139,9 @@ class AvatarAnimation {
 
   void Draw(int t) {
     const Stopwatch watch;
-    const SplatPicture& picture = shown_->Draw(t);
+    const SplatImage& image = shown_->Draw(t);
     draw_ms_.push_back(1e3 * watch.seconds());
-    pixels_.push_back(static_cast<double>(picture.window().area()));
+    pixels_.push_back(static_cast<double>(image.window().area()));
   }
 
   void DrawFrames() {
@@ -167,11 +167,11 @@ class AvatarAnimation {
       if (shows) Draw(t);
       if (!shows) ++summary_.frames_without_fit;
       clock_.Begin("write");
-      if (!request_.pictures.empty()) WritePicture(t, shows);
+      if (!request_.pictures.empty()) WriteFrameImage(t, shows);
       if (page_ && t % page_step_ == 0) AddToPage(t, shows);
       if (video || set) {
         Image whole = background.Next();
-        if (shows) LayOver(shown_->picture(), &whole);
+        if (shows) LayOver(shown_->image(), &whole);
         if (video) video->Write(whole);
         if (set) set->Add(t, FrameOfSet(shows, std::move(whole)));
       }
@@ -198,16 +198,16 @@ class AvatarAnimation {
 
   PersonFrame FrameOfSet(bool shows, Image whole) {
     PersonFrame frame;
-    if (shows) frame.labels = LabelsOf(shown_->picture(), shown_->GarmentShare(), whole.width, whole.height);
+    if (shows) frame.labels = LabelsOf(shown_->image(), shown_->GarmentShare(), whole.width, whole.height);
     frame.rgb = std::move(whole);
     return frame;
   }
 
-  void WritePicture(int t, bool shows) const {
+  void WriteFrameImage(int t, bool shows) const {
     const int width = shown_->width(), height = shown_->height();
     const std::vector<uint8_t> nobody(shows ? 0 : 4 * static_cast<size_t>(width) * height, 0);
     WriteAlphaPng(FrameFile(request_.pictures, t), width, height,
-                  shows ? WithAlpha(shown_->picture(), width, height) : nobody);
+                  shows ? WithAlpha(shown_->image(), width, height) : nobody);
   }
 
   void ScoreFrames() {
@@ -218,8 +218,8 @@ class AvatarAnimation {
       if (views[0].window.empty()) continue;
       AvatarView view;
       view.camera = views[0].camera, view.window = views[0].window, view.options.num_threads = threads_;
-      const SplatPicture& picture = shown_->Draw(views[0].frame, view);
-      scorer.Add(views[0], picture, shown_->GarmentShare());  // of the picture drawn: not in one call with Draw()
+      const SplatImage& image = shown_->Draw(views[0].frame, view);
+      scorer.Add(views[0], image, shown_->GarmentShare());  // of the image just drawn, so not in one call with Draw()
     }
     summary_.scores = scorer.Means();
   }

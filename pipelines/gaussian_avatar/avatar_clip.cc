@@ -67,15 +67,15 @@ void AvatarClip::CheckSize(const std::string& file, int num_frames, int width, i
                                          "; give the track of this very clip"));
   }
   if (width != track_.camera.width || height != track_.camera.height) {
-    throw std::runtime_error(Concatenate(track, ": made for pictures of ", track_.camera.width, "x",
-                                         track_.camera.height, ", ", file, " has ", width, "x", height));
+    throw std::runtime_error(Concatenate(track, ": made for images of ", track_.camera.width, "x", track_.camera.height,
+                                         ", ", file, " has ", width, "x", height));
   }
 }
 
-TrainingView AvatarClip::CutView(int t, const Image& picture, const PersonAt& person_at, int margin,
+TrainingView AvatarClip::CutView(int t, const Image& image, const PersonAt& person_at, int margin,
                                  bool with_body) const {
   const PixelBox body = with_body ? posed_->BoxAt(t, 0) : PixelBox();
-  TrainingView view = CutTrainingView(picture, person_at, posed_->BoxAt(t, kSearchShare), body, margin);
+  TrainingView view = CutTrainingView(image, person_at, posed_->BoxAt(t, kSearchShare), body, margin);
   if (view.window.empty()) return view;
   view.time = t;
   view.camera = posed_->CameraAt(t);
@@ -120,19 +120,19 @@ std::vector<TrainingView> AvatarClip::ReadViews(const std::vector<int>& frames, 
     return views;
   }
   VideoReader video(request_.data);
-  Image picture;
+  Image image;
   for (size_t k = 0; k < frames.size(); ++k) {
     const int t = frames[k];
     callbacks.Update("reading", 0);
     video.Skip(t - video.next_frame());
-    if (!video.Read(&picture)) {
+    if (!video.Read(&image)) {
       throw std::runtime_error(
           Concatenate(request_.data, ": ends before frame ", t, ", the track has ", track_.num_frames(), " frames"));
     }
     if (!posed_->HasResult(t)) continue;
     const LabelImage parts = mask_->PartsOf(t);
     const auto in_mask = [&](int x, int y) { return parts.At(x, y) != PartLabelSequence::kBackground ? 1 : 0; };
-    views[k] = CutView(t, picture, in_mask, margin, with_body);
+    views[k] = CutView(t, image, in_mask, margin, with_body);
   }
   return views;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a person of Gaussians is learned from: a single-person dataset, or a video with a track and the person's mask.
+/// Training data of a Gaussian avatar: a single-person dataset, or a video with a track and the person's mask.
 #pragma once
 
 #include <memory>
@@ -28,32 +28,32 @@ struct AvatarClipRequest {
 
 class AvatarClip {
  public:
-  /// Throws std::runtime_error naming files that cannot be used or do not fit each other, RequestError where a video
-  /// comes without track or mask.
+  /// Throws std::runtime_error naming files that cannot be used or do not match, RequestError for a video without track
+  /// or mask.
   explicit AvatarClip(const AvatarClipRequest& request);
 
   [[nodiscard]] const BodyModel& body() const { return *body_; }
   [[nodiscard]] const Track& track() const { return track_; }
   [[nodiscard]] const PosedAvatar& posed() const { return *posed_; }
 
-  /// Where the person is in a frame with a result, near the tracked body. Throws std::runtime_error when it cannot be
+  /// Mask of the person near the tracked body, in a frame with a result. Throws std::runtime_error when it cannot be
   /// read.
   [[nodiscard]] LabelImage MaskAt(int t) const;
 
-  /// From now on views have the bones of a garment, of every frame of the track: those of the first run, and those of
-  /// all others as TrainingView::other_cloth. At least one run.
+  /// Adds a garment's bones, for every frame of the track, to all views read afterwards: those of the first run as the
+  /// frame's own, those of the other runs as TrainingView::other_cloth. At least one run.
   void Wear(std::vector<GarmentBones> runs);
 
-  /// The views of these frames (rising), windows `margin` pixels around the person and, where `with_body`, around the
-  /// tracked body. A frame without a result or without the person has an empty window. Throws std::runtime_error when
-  /// a picture cannot be read; Cancelled. The stage is "reading".
+  /// Reads the views of these frames (ascending), in windows that enclose the person and, with `with_body`, the tracked
+  /// body, plus `margin` pixels. A frame without a result or without the person has an empty window. Throws
+  /// std::runtime_error when an image cannot be read; Cancelled. The stage is "reading".
   [[nodiscard]] std::vector<TrainingView> ReadViews(const std::vector<int>& frames, int margin, bool with_body,
                                                     const PipelineCallbacks& callbacks) const;
 
  private:
   void OpenVideo();
   void CheckSize(const std::string& file, int num_frames, int width, int height) const;
-  [[nodiscard]] TrainingView CutView(int t, const Image& picture, const PersonAt& person_at, int margin,
+  [[nodiscard]] TrainingView CutView(int t, const Image& image, const PersonAt& person_at, int margin,
                                      bool with_body) const;
 
   AvatarClipRequest request_;

@@ -21,10 +21,10 @@ Image TrueWindow(const TrainingView& view) {
   return image;
 }
 
-Image DrawnWindow(const SplatPicture& picture) {
-  Image image(picture.window().width(), picture.window().height());
+Image DrawnWindow(const SplatImage& drawn) {
+  Image image(drawn.window().width(), drawn.window().height());
   for (int c = 0; c < 3; ++c) {
-    const std::span<const float> plane = picture.plane(static_cast<SplatPicture::Plane>(2 - c));
+    const std::span<const float> plane = drawn.plane(static_cast<SplatImage::Plane>(2 - c));
     for (size_t i = 0; i < plane.size(); ++i) {
       image.bgr[3 * i + c] = static_cast<uint8_t>(std::lround(255 * std::clamp(plane[i], 0.0F, 1.0F)));
     }
@@ -39,7 +39,7 @@ void AvatarScorer::AddGarment(const TrainingView& view, std::span<const float> g
   size_t of_garment = 0;
   for (size_t i = 0; i < garment.size(); ++i) {
     const uint8_t label = view.pixels[4 * i + 3];
-    const bool is_garment = garment[i] >= kLeastGarmentShare;
+    const bool is_garment = garment[i] >= kMinGarmentShare;
     ++shown[label];
     covered[label] += is_garment ? 1 : 0;
     of_garment += is_garment ? 1 : 0;
@@ -53,23 +53,23 @@ void AvatarScorer::AddGarment(const TrainingView& view, std::span<const float> g
   }
 }
 
-void AvatarScorer::Add(const TrainingView& view, const SplatPicture& picture, std::span<const float> garment) {
-  const Image truth = TrueWindow(view), drawn = DrawnWindow(picture);
-  BODYLOOM_CHECK(truth.width == drawn.width && truth.height == drawn.height, "avatar scores: a picture of ",
-                 drawn.width, "x", drawn.height, " for a window of ", truth.width, "x", truth.height);
+void AvatarScorer::Add(const TrainingView& view, const SplatImage& image, std::span<const float> garment) {
+  const Image truth = TrueWindow(view), drawn = DrawnWindow(image);
+  BODYLOOM_CHECK(truth.width == drawn.width && truth.height == drawn.height, "avatar scores: an image of ", drawn.width,
+                 "x", drawn.height, " for a window of ", truth.width, "x", truth.height);
   PixelMask person = {truth.width, truth.height, {}}, outline = person;
-  const std::span<const float> alpha = picture.plane(SplatPicture::kAlpha);
+  const std::span<const float> alpha = image.plane(SplatImage::kAlpha);
   for (size_t i = 0; i < view.window.area(); ++i) {
     person.inside.push_back(view.pixels[4 * i + 3] != 0 ? 1 : 0);
-    outline.inside.push_back(alpha[i] >= kLeastAlpha ? 1 : 0);
+    outline.inside.push_back(alpha[i] >= kMinAlpha ? 1 : 0);
   }
   double l1 = 0;
   for (size_t i = 0; i < truth.bgr.size(); ++i) l1 += std::abs(int{truth.bgr[i]} - int{drawn.bgr[i]});
-  // Equal pictures have no end of decibels, of which there is no mean.
-  constexpr double kMostDb = 100;
+  // Equal images have infinite PSNR, which has no mean.
+  constexpr double kMaxDb = 100;
   ++sums_.frames;
-  sums_.psnr_box_db += std::min(kMostDb, Psnr(truth, drawn));
-  sums_.psnr_person_db += std::min(kMostDb, Psnr(truth, drawn, &person));
+  sums_.psnr_box_db += std::min(kMaxDb, Psnr(truth, drawn));
+  sums_.psnr_person_db += std::min(kMaxDb, Psnr(truth, drawn, &person));
   sums_.ssim += Ssim(truth, drawn, SsimPreset::k3dgs);
   sums_.l1 += l1 / 255 / static_cast<double>(truth.bgr.size());
   sums_.outline_iou += MaskIoU(person, outline);
@@ -85,9 +85,9 @@ AvatarScores AvatarScorer::Means() const {
   // A mask says 1 wherever the person is: nothing by which a garment could be told.
   const bool has_labels =
       std::any_of(by_label_.begin() + 2, by_label_.end(), [](const Overlap& overlap) { return overlap.covered > 0; });
-  const Overlap& most = *std::max_element(by_label_.begin(), by_label_.end(),
-                                          [](const Overlap& a, const Overlap& b) { return a.covered < b.covered; });
-  if (has_labels) means.garment_iou = most.iou / most.frames;
+  const Overlap& maximum = *std::max_element(by_label_.begin(), by_label_.end(),
+                                             [](const Overlap& a, const Overlap& b) { return a.covered < b.covered; });
+  if (has_labels) means.garment_iou = maximum.iou / maximum.frames;
   return means;
 }
 

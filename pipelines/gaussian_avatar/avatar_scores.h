@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How like the truth pictures of a person of Gaussians are.
+/// Scores of rendered images of a Gaussian avatar against the true images.
 #pragma once
 
 #include <array>
@@ -11,12 +11,12 @@
 #include <string>
 
 #include "render/gaussian_avatar/learning/training_view.h"
-#include "render/splat/splat_picture.h"
+#include "render/splat/splat_image.h"
 
 namespace bodyloom {
 
-/// Means over frames. Pictures are compared in bytes, both over black, in the box around the true person that the
-/// views have (kScoreMargin pixels wide).
+/// Means over frames. Images are compared in 8 bits, both over black, in the true person's bounding box enlarged by
+/// kScoreMargin pixels, which the views have.
 struct AvatarScores {
   static constexpr int kScoreMargin = 32;
   int frames = 0;
@@ -24,21 +24,21 @@ struct AvatarScores {
   double psnr_person_db = 0;  ///< of the pixels of the true person
   double ssim = 0;            ///< of the box, preset 3dgs (data_tools/evaluation/ssim.h)
   double l1 = 0;              ///< of the box, in [0, 1]
-  double outline_iou = 0;     ///< of the true person and where alpha is at least ½
-  /// Of where the garment is at least half of the picture, and the label that it mostly covers; absent without a
-  /// garment, and where the truth has no labels.
+  double outline_iou = 0;     ///< true person against alpha of at least ½
+  /// IoU of the pixels whose garment share is at least ½ with the label that they mostly cover; absent without a
+  /// garment or without true labels.
   std::optional<double> garment_iou;
 };
 
-/// Collects them.
+/// Accumulates the scores.
 class AvatarScorer {
  public:
-  /// `picture`: drawn in the view's window. `garment`: share of the garment in its pixels; empty: there is none.
-  void Add(const TrainingView& view, const SplatPicture& picture, std::span<const float> garment = {});
+  /// Adds a view. `image`: drawn in the view's window. `garment`: share of the garment in each pixel; empty: none.
+  void Add(const TrainingView& view, const SplatImage& image, std::span<const float> garment = {});
   [[nodiscard]] AvatarScores Means() const;
 
  private:
-  /// A label of the truth beside the garment.
+  /// Overlap of one true label with the garment.
   struct Overlap {
     size_t covered = 0;  ///< its pixels that the garment covers
     double iou = 0;      ///< sum over the frames that show either
@@ -50,9 +50,9 @@ class AvatarScorer {
   std::array<Overlap, 256> by_label_{};
 };
 
-/// The person over black; of the truth, and of a picture drawn in the view's window.
+/// The person over black: of the truth, and of an image drawn in the view's window.
 Image TrueWindow(const TrainingView& view);
-Image DrawnWindow(const SplatPicture& picture);
+Image DrawnWindow(const SplatImage& image);
 
 /// "34 frames: PSNR 24.1 dB in the box, 20.4 dB in the person, …"
 std::string ScoresText(const AvatarScores& scores);

@@ -20,7 +20,8 @@ ShownAvatar::ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int nu
                          const PipelineCallbacks& callbacks)
     : avatar_(avatar), threads_(num_threads) {
   if (avatar.file.had_network) {
-    callbacks.Say(avatar.run + ": learned a network of the motion, which this version no longer has; shown without it");
+    callbacks.Message(avatar.run +
+                      ": learned a network of the motion, which this version no longer has; shown without it");
   }
   track_ = std::move(motion.track);
   try {
@@ -30,9 +31,9 @@ ShownAvatar::ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int nu
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(motion.where + ": " + error.what());
   }
-  if (width() < 2 || height() < 2 || std::max(width(), height()) > kLongestPictureSide) {
-    throw std::runtime_error(Concatenate(motion.where, ": pictures of ", width(), "x", height(),
-                                         ", expected sides of 2 to ", kLongestPictureSide));
+  if (width() < 2 || height() < 2 || std::max(width(), height()) > kLongestImageSide) {
+    throw std::runtime_error(Concatenate(motion.where, ": images of ", width(), "x", height(),
+                                         ", expected sides of 2 to ", kLongestImageSide));
   }
 }
 
@@ -57,14 +58,14 @@ void ShownAvatar::Pose(const ShownMotion& motion, const PipelineCallbacks& callb
   }
 }
 
-const SplatPicture& ShownAvatar::Draw(int t) {
+const SplatImage& ShownAvatar::Draw(int t) {
   posed_->MakeFrame(t, &frame_);
   return Draw(frame_, posed_->ViewAt(t));
 }
 
-const SplatPicture& ShownAvatar::Draw(const AvatarFrame& frame, const AvatarView& view) {
+const SplatImage& ShownAvatar::Draw(const AvatarFrame& frame, const AvatarView& view) {
   painter_.Draw(avatar_.file.body, avatar_.body->data().faces, frame, view);
-  return painter_.picture();
+  return painter_.image();
 }
 
 std::vector<float> ShownAvatar::GarmentShare() {

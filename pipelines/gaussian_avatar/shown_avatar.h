@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person of Gaussians in a motion, drawn frame by frame: posed, its garment simulated.
+/// Poses and draws a Gaussian avatar frame by frame in a motion, with its garment simulated.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@
 
 namespace bodyloom {
 
-// A person of Gaussians as `bodyloom train avatar` left it, with the body that it was learned on.
+// A Gaussian avatar as written by `bodyloom train avatar`, with the body that it was trained on.
 
 struct LearnedAvatar {
   std::string run;  ///< the folder or file that it was read from, for messages
@@ -24,51 +24,50 @@ struct LearnedAvatar {
   std::shared_ptr<const BodyModel> body;
 };
 
-/// `run`: the folder of a run, or its avatar.npz. `body`: a file; empty: the built-in body. Throws std::runtime_error
-/// naming a file that cannot be used, and for another body than the person's.
+/// Reads an avatar. `run`: the folder of a run, or its avatar.npz. `body`: a file; empty: the built-in body. Throws
+/// std::runtime_error naming a file that cannot be used, or for a body that is not the avatar's.
 LearnedAvatar ReadLearnedAvatar(const std::string& run, const std::string& body);
 
 struct ShownMotion {
   Track track;        ///< of the person's body
   std::string where;  ///< the track's file, for messages
-  /// The track's shape is kept; otherwise it is the person's.
+  /// True: the track's shape is kept; false: the avatar's shape is used.
   bool keeps_shape = false;
   std::string view_yaw;  ///< how far the view is turned (pipelines/animate/animation_limits.h)
-  std::string freeze;    ///< where time stands still (pipelines/animate/animation_limits.h); empty: nowhere
-  int size = 0;          ///< pixels of the picture's longer side; 0: as the track's
+  std::string freeze;    ///< frames shown repeatedly (pipelines/animate/animation_limits.h); empty: none
+  int size = 0;          ///< pixels of the image's longer side; 0: as the track's
 };
 
 class ShownAvatar {
  public:
-  /// The garment is simulated along the whole motion, which is most of what this takes. Keeps a reference to `avatar`.
-  /// A person who learned a network of the motion, as those of earlier versions did, is shown without it, and a message
-  /// says so.
-  /// Throws std::runtime_error naming what cannot be used, RequestError for a view or freeze that is none, Cancelled.
+  /// Simulates the garment along the whole motion, which takes most of the time. Keeps a reference to `avatar`. An
+  /// avatar of an earlier version with a learned network of the motion is shown without it, with a message. Throws
+  /// std::runtime_error naming what cannot be used, RequestError for an invalid view or freeze, Cancelled.
   ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int num_threads, const PipelineCallbacks& callbacks);
   ShownAvatar(const ShownAvatar&) = delete;
   ShownAvatar& operator=(const ShownAvatar&) = delete;
 
-  /// As it is shown: of the person's shape, its frames repeated where time stands still.
+  /// The track as shown: with the shape that is used, frozen frames repeated.
   [[nodiscard]] const Track& track() const { return track_; }
   [[nodiscard]] int num_frames() const { return track_.num_frames(); }
   [[nodiscard]] int width() const { return posed_->width(); }
   [[nodiscard]] int height() const { return posed_->height(); }
-  /// Whether a frame shows the person; others cannot be drawn.
+  /// True if the frame shows the person; other frames cannot be drawn.
   [[nodiscard]] bool HasResult(int t) const { return posed_->HasResult(t); }
   [[nodiscard]] Camera CameraAt(int t) const { return posed_->CameraAt(t); }
-  /// Where the garment's nodes are in the motion's own frames; without frames: none is worn.
+  /// Poses of the garment's nodes in the motion's own frames; no frames: no garment.
   [[nodiscard]] const GarmentBones& garment() const { return posed_->garment(); }
 
-  /// Frame t, which has a result. The references that this class gives are valid until the next Draw.
-  const SplatPicture& Draw(int t);
-  /// Posed and looked at as given.
-  const SplatPicture& Draw(const AvatarFrame& frame, const AvatarView& view);
+  /// Draws frame t, which must have a result. References returned by this class are valid until the next Draw.
+  const SplatImage& Draw(int t);
+  /// Draws a given pose from a given view.
+  const SplatImage& Draw(const AvatarFrame& frame, const AvatarView& view);
 
-  // Of the picture last drawn.
-  [[nodiscard]] const SplatPicture& picture() const { return painter_.picture(); }
+  // Results of the last Draw.
+  [[nodiscard]] const SplatImage& image() const { return painter_.image(); }
   [[nodiscard]] const CameraGaussians& posed() const { return painter_.posed(); }
   [[nodiscard]] const AvatarFrame& frame() const { return frame_; }  ///< of Draw(t)
-  /// How much of each pixel is the garment, in [0, 1]; empty: none is worn.
+  /// Share of the garment in each pixel, in [0, 1]; empty without a garment.
   [[nodiscard]] std::vector<float> GarmentShare();
 
  private:

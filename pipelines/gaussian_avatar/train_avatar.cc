@@ -48,13 +48,13 @@ constexpr int kJudgedFrames = 16;          ///< held out, in the course of train
 constexpr int kHeldOutShown = 4;
 constexpr const char* kGarmentFit = "garment_fit";  ///< in config.json
 constexpr int kClothRuns = 3;                       ///< of the garment's simulation, that are learned from in turn
-constexpr int64_t kMostSteps = 100000000;
+constexpr int64_t kMaxSteps = 100000000;
 
 std::string InRun(const std::string& run, const char* name) { return (fs::path(run) / name).string(); }
 
-std::vector<int> Spread(const std::vector<int>& frames, int most) {
+std::vector<int> Spread(const std::vector<int>& frames, int maximum) {
   std::vector<int> some;
-  for (const int i : EvenlySpreadFrames(static_cast<int>(frames.size()), most)) some.push_back(frames[i]);
+  for (const int i : EvenlySpreadFrames(static_cast<int>(frames.size()), maximum)) some.push_back(frames[i]);
   return some;
 }
 
@@ -109,7 +109,7 @@ class AvatarTraining {
 
   [[nodiscard]] AvatarTrainerOptions Options() const {
     AvatarTrainerOptions options;
-    options.steps = request_.minutes > 0 ? kMostSteps : request_.steps;
+    options.steps = request_.minutes > 0 ? kMaxSteps : request_.steps;
     options.seconds = 60 * request_.minutes;
     options.seed = request_.seed;
     options.num_threads = request_.clip.threads;
@@ -117,7 +117,7 @@ class AvatarTraining {
     return options;
   }
 
-  /// What a training that is gone on with must have in common with its beginning.
+  /// Options that must not change when a training is resumed.
   [[nodiscard]] std::string OptionsText() const {
     nlohmann::ordered_json json = {{"steps", request_.steps},   {"minutes", request_.minutes},
                                    {"seed", request_.seed},     {"skin_side", request_.skin_side},
@@ -140,8 +140,8 @@ class AvatarTraining {
       if (clothes.garment.length_m > 0) garment = GarmentOf(clip_->body(), betas, clothes);
       garment_report_ = {{"frames", clothes.frames},
                          {"found_in", clothes.found_in},
-                         {"unlike_close", clothes.unlike_close},
-                         {"unlike_loose", clothes.unlike_loose}};
+                         {"mask_error_tight", clothes.mask_error_tight},
+                         {"mask_error_with_garment", clothes.mask_error_with_garment}};
     }
     if (request_.resume && fs::exists(RunConfigPath(request_.out))) {  // what was found when it was begun
       const nlohmann::json config = ReadRunConfig(request_.out, kAvatarProgram);
@@ -199,7 +199,7 @@ class AvatarTraining {
       throw std::runtime_error(Concatenate(path, ": pose_values of ", checkpoint_.state.poses.values.rows(),
                                            " frames, the track has ", num_frames));
     }
-    // What was done after it is done again.
+    // Lines after the checkpoint are dropped, as these steps are repeated.
     std::istringstream lines(fs::exists(MetricsPath()) ? ReadFileBytes(MetricsPath()) : "");
     for (std::string line; std::getline(lines, line);) {
       if (line.empty() || std::atoll(line.c_str()) > checkpoint_.state.step) continue;
@@ -215,7 +215,7 @@ class AvatarTraining {
 
   void Train() {
     AvatarTrainer trainer(clip_->body().data().faces, views_, options_, request_.refine ? &*refiner_ : nullptr);
-    trainer.Watch(held_out_);
+    trainer.SetValidationViews(held_out_);
     AvatarTrainingState& state = checkpoint_.state;
     if (metrics_.empty()) metrics_ = "step,loss,cost,drawn,relocated,held_out,seconds\n";
     std::deque<double> losses;
@@ -235,7 +235,7 @@ class AvatarTraining {
                                 held_out.empty() ? "" : Fixed(held_out.back(), 6), ",", Fixed(state.seconds, 2), "\n");
         relocated = 0;
       }
-      if (!callbacks_.GoesOn("loss " + Fixed(summary_.loss, 4), LearningShare() * trainer.Progress(state))) {
+      if (!callbacks_.ReportProgress("loss " + Fixed(summary_.loss, 4), LearningShare() * trainer.Progress(state))) {
         summary_.stopped = true;
         break;
       }
@@ -272,7 +272,8 @@ class AvatarTraining {
     if (state.poses.values.rows() == 0) state.poses.Reset(refiner_->num_frames(), refiner_->num_joints());
     while (!trainer.IsDone(state)) {
       trainer.Step(&state);
-      if (!callbacks_.GoesOn("refining the track", LearningShare() + (1 - LearningShare()) * trainer.Progress(state))) {
+      if (!callbacks_.ReportProgress("refining the track",
+                                     LearningShare() + (1 - LearningShare()) * trainer.Progress(state))) {
         summary_.stopped = true;
         return;
       }
@@ -302,10 +303,10 @@ class AvatarTraining {
         CarryBones(views[i].frame, &frame);
       }
       painter.Draw(body, clip_->body().data().faces, frame, view);
-      scorer.Add(views[i], painter.picture(), GarmentIn(&painter));
+      scorer.Add(views[i], painter.image(), GarmentIn(&painter));
       if (preview == nullptr || !std::binary_search(shown.begin(), shown.end(), static_cast<int>(i))) continue;
       sheet.push_back(TrueWindow(views[i]));
-      sheet.push_back(DrawnWindow(painter.picture()));
+      sheet.push_back(DrawnWindow(painter.image()));
     }
     if (!sheet.empty()) {
       ContactSheetOptions layout;
@@ -345,7 +346,7 @@ class AvatarTraining {
   TrainAvatarSummary Finish() {
     const AvatarTrainingState& state = checkpoint_.state;
     summary_.steps = state.step;
-    summary_.landing_step = state.held_out.landing_step;
+    summary_.cooldown_step = state.held_out.cooldown_step;
     summary_.best_step = state.kept ? state.kept->step : 0;
     summary_.training_seconds = state.seconds;
     summary_.gaussians = state.ResultBody().size();
@@ -360,7 +361,7 @@ class AvatarTraining {
                                    {"gaussians", summary_.gaussians}, {"loose", summary_.loose},
                                    {"loss", summary_.loss},           {"seconds", ToJson(summary_.seconds)}};
     if (summary_.best_step > 0) json["best_step"] = summary_.best_step;
-    if (summary_.landing_step > 0) json["landing_step"] = summary_.landing_step;
+    if (summary_.cooldown_step > 0) json["cooldown_step"] = summary_.cooldown_step;
     if (summary_.cloth > 0) json["cloth"] = summary_.cloth;
     if (!garment_report_.is_null()) json["garment"] = garment_report_;
     if (summary_.training) json["training"] = ToJson(*summary_.training);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Motions collected for training: quality, classes, split and pictures (data_tools/motion/motion_library.h).
+/// Surveys motions for training: quality, classes, split and a contact sheet (data_tools/motion/motion_library.h).
 #pragma once
 
 #include <string>
@@ -30,11 +30,11 @@ struct SurveyMotionsReport {
   MotionLibrarySummary library;
 };
 
-/// Reads, cleans and measures every motion, and writes what was requested. Throws std::runtime_error naming a file that
-/// cannot be used, also when no file holds a motion; Cancelled.
+/// Reads, cleans and measures every motion, and writes the requested files. Throws std::runtime_error naming a file
+/// that cannot be used, or when no file holds a motion; Cancelled.
 SurveyMotionsReport SurveyMotions(const SurveyMotionsRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// A line a clip, then minutes by class and by source, what was cleaned and what was left out.
+/// One line per clip, then minutes by class and by source, the repairs and the clips left out.
 std::string ToText(const SurveyMotionsReport& report);
 /// The same as one JSON object.
 std::string ToJson(const SurveyMotionsReport& report);

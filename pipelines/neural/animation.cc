@@ -16,13 +16,13 @@
 
 namespace bodyloom {
 
-AnimationSummary WriteAnimation(const AnimationRequest& request, const Track& track, PictureSize picture, double fps,
+AnimationSummary WriteAnimation(const AnimationRequest& request, const Track& track, ImageSize image, double fps,
                                 const PipelineCallbacks& callbacks, FramePainter* painter, std::vector<Image>* sheet,
                                 int* columns) {
   AnimationSummary summary;
   summary.frames = track.num_frames();
-  summary.picture = picture;
-  VideoWriter video(request.out, picture.width, picture.height, fps);
+  summary.image = image;
+  VideoWriter video(request.out, image.width, image.height, fps);
   std::vector<int> on_sheet;
   if (!request.sheet.empty()) on_sheet = EvenlySpreadFrames(summary.frames, kSheetFrames);
   std::vector<double> network_ms;
@@ -36,9 +36,9 @@ AnimationSummary WriteAnimation(const AnimationRequest& request, const Track& tr
       ++summary.frames_without_fit;
     }
     if (std::binary_search(on_sheet.begin(), on_sheet.end(), t)) {
-      std::vector<Image> pictures = painter->ForSheet(t, painted, composed);
-      if (!pictures.empty()) *columns = static_cast<int>(pictures.size());
-      std::move(pictures.begin(), pictures.end(), std::back_inserter(*sheet));
+      std::vector<Image> images = painter->ForSheet(t, painted, composed);
+      if (!images.empty()) *columns = static_cast<int>(images.size());
+      std::move(images.begin(), images.end(), std::back_inserter(*sheet));
     }
     video.Write(composed);
     painter->Written(t, painted, composed);
@@ -53,7 +53,7 @@ AnimationSummary WriteAnimation(const AnimationRequest& request, const Track& tr
 nlohmann::ordered_json ReportOf(const AnimationSummary& summary, const std::string& out) {
   return {{"frames", summary.frames},
           {"frames_without_fit", summary.frames_without_fit},
-          {"picture", {summary.picture.width, summary.picture.height}},
+          {"picture", {summary.image.width, summary.image.height}},
           {"network_ms_median", summary.network_ms},
           {"seconds", ToJson(summary.seconds)},
           {"output", out}};
@@ -77,17 +77,17 @@ double FramesPerSecond(const Track& track, double otherwise) {
   return static_cast<double>(times.size() - 1) / (times.back() - times.front());
 }
 
-void WriteSheet(const std::string& path, const std::vector<Image>& pictures, int columns, int cell_height_px) {
-  if (path.empty() || pictures.empty()) return;
+void WriteSheet(const std::string& path, const std::vector<Image>& images, int columns, int cell_height_px) {
+  if (path.empty() || images.empty()) return;
   ContactSheetOptions layout;
   layout.columns = columns;
   layout.cell_height_px = cell_height_px;
-  WriteImage(path, ContactSheet(pictures, layout));
+  WriteImage(path, ContactSheet(images, layout));
 }
 
 void SayLines(const std::string& notes, const PipelineCallbacks& callbacks) {
   std::istringstream lines(notes);
-  for (std::string line; std::getline(lines, line);) callbacks.Say(line);
+  for (std::string line; std::getline(lines, line);) callbacks.Message(line);
 }
 
 }  // namespace bodyloom

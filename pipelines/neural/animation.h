@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Parts that the jobs which render a person with a trained network share.
+/// Shared parts of the jobs that render a person with a trained network.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -21,24 +21,24 @@ struct AnimationRequest {
   std::string out;             ///< the video to write, .mp4
   std::string sheet;           ///< a contact sheet to write; empty: none
   std::string json;            ///< a report with times to write; empty: none
-  bool full_size = false;      ///< pictures as large as the track's; false: as large as the networks draw
+  bool full_size = false;      ///< images as large as the track's; false: as large as the networks' output
   int threads = 0;             ///< 0: all cores
-  std::string device = "cpu";  ///< where the networks run: "cpu" or "cuda"
+  std::string device = "cpu";  ///< device of the networks: "cpu" or "cuda"
 };
 
-inline constexpr int kSheetFrames = 6;  ///< of the clip, on a contact sheet
+inline constexpr int kSheetFrames = 6;  ///< number of frames on a contact sheet
 
 struct AnimationSummary {
   int frames = 0;
-  int frames_without_fit = 0;  ///< of them: they show the background alone
-  PictureSize picture;         ///< of the pictures written
+  int frames_without_fit = 0;  ///< of them, without a person: background only
+  ImageSize image;             ///< size of the images written
   double network_ms = 0;       ///< median over frames of the network's time; 0 without a frame
-  StageSeconds seconds;        ///< where the time went
+  StageSeconds seconds;        ///< time by stage
   double total_seconds = 0;
   std::vector<std::string> written;  ///< the files, as the request names them
 };
 
-/// What makes the pictures of an animation, frame by frame in order.
+/// Renders the images of an animation, frame by frame in order.
 class FramePainter {
  public:
   FramePainter() = default;
@@ -46,23 +46,24 @@ class FramePainter {
   FramePainter& operator=(const FramePainter&) = delete;
   virtual ~FramePainter() = default;
 
-  /// What stands behind the person in the next frame.
+  /// Background of the next frame.
   virtual const Image& NextBackground() = 0;
-  /// Lays the person of frame t, which has a result, into `composed`. Returns the seconds that the networks took.
+  /// Composites the person of frame t, which must have a result, over `composed`. Returns the networks' time in
+  /// seconds.
   virtual double Paint(int t, Image* composed) = 0;
-  /// The pictures of frame t for the contact sheet; `painted`: the frame has a result.
+  /// Pictures of frame t for the contact sheet; `painted`: the frame has a result.
   virtual std::vector<Image> ForSheet(int t, bool painted, const Image& composed) = 0;
-  /// Frame t is in the video.
+  /// Called after frame t was written to the video.
   virtual void Written(int /*t*/, bool /*painted*/, const Image& /*composed*/) {}
-  /// Frames that were rendered before the first of the video, for the progress.
+  /// Number of frames rendered before the first frame of the video, for the progress.
   [[nodiscard]] virtual int FramesBefore() const { return 0; }
 };
 
-/// Writes the request's video of the track's frames, of this size. Pictures of kSheetFrames frames are added to `sheet`
-/// where the request wants one; *columns, if anything was added, is how many the last of them gave. In the summary:
-/// frames, frames_without_fit, picture, network_ms (without the first frame, which warms up). The stage of `callbacks`
-/// is "rendering".
-AnimationSummary WriteAnimation(const AnimationRequest& request, const Track& track, PictureSize picture, double fps,
+/// Writes the request's video of the track's frames, of this size. If requested, pictures of kSheetFrames frames are
+/// appended to `sheet` and *columns is set to the number of pictures of the last of them. Sets frames,
+/// frames_without_fit, image and network_ms of the summary (without the first frame, which warms up). The stage of
+/// `callbacks` is "rendering".
+AnimationSummary WriteAnimation(const AnimationRequest& request, const Track& track, ImageSize image, double fps,
                                 const PipelineCallbacks& callbacks, FramePainter* painter, std::vector<Image>* sheet,
                                 int* columns);
 
@@ -72,16 +73,16 @@ nlohmann::ordered_json ReportOf(const AnimationSummary& summary, const std::stri
 /// Throws as RequireDistinct and RequireWritable (pipelines/files.h).
 void RequireOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-/// Those of the paths that are not empty.
+/// The paths that are not empty.
 std::vector<std::string> FilesAmong(const std::vector<std::string>& paths);
 
-/// Mean rate of the track; `otherwise` with fewer than two frames, or two at the same time.
+/// Mean frame rate of the track; `otherwise` with fewer than two frames, or with equal first and last times.
 double FramesPerSecond(const Track& track, double otherwise);
 
-/// Writes a contact sheet; nothing without a path or without pictures.
-void WriteSheet(const std::string& path, const std::vector<Image>& pictures, int columns, int cell_height_px);
+/// Writes a contact sheet, unless path or images are empty.
+void WriteSheet(const std::string& path, const std::vector<Image>& images, int columns, int cell_height_px);
 
-/// Each line of `notes`, all of which end in a newline, as a message.
+/// Sends each line of `notes` as a message; every line ends in a newline.
 void SayLines(const std::string& notes, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

@@ -14,7 +14,7 @@ ChartDetector DensePoseDetector(const DensePoseDetectorOptions& options) {
   StartNeuralRuntime(options.num_threads);
   UseNeuralDevice(options.device);
   const auto network = std::make_shared<const DensePoseNetwork>(options.model, options.colours);
-  return [network](const Image& picture) { return network->Detect(picture); };
+  return [network](const Image& image) { return network->Detect(image); };
 }
 
 std::vector<FrameMetric> LikenessMetrics(const std::string& weights_folder) {

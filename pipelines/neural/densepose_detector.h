@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// `bodyloom detect --dense-model`: DensePose as the detector of pipelines/detect/detect_dense.h.
+/// DensePose as a detector of pipelines/detect/detect_dense.h (`bodyloom detect --dense-model`), and LPIPS metrics.
 #pragma once
 
 #include <string>
@@ -18,14 +18,14 @@ struct DensePoseDetectorOptions {
   int num_threads = 0;  ///< 0: all cores
 };
 
-/// Throws as UseNeuralDevice and DensePoseNetwork.
+/// Makes the detector. Throws as UseNeuralDevice and DensePoseNetwork.
 ChartDetector DensePoseDetector(const DensePoseDetectorOptions& options);
 
-// `bodyloom metrics --lpips`: how pictures differ to networks that look at them.
+// Perceptual metrics of `bodyloom metrics --lpips`.
 
-/// LPIPS v0.1 on AlexNet, and tLPIPS of frames that follow another (FramePair::follows). `weights_folder` may be empty,
-/// or lack the weights: then a random-feature substitute measures, and its columns are called so. Throws
-/// std::runtime_error naming weights that do not fit.
+/// LPIPS v0.1 on AlexNet, and tLPIPS of consecutive frames (FramePair::follows). Without weights in `weights_folder`,
+/// which may be empty, random features are used and the columns are named accordingly. Throws std::runtime_error naming
+/// weights that do not fit.
 std::vector<FrameMetric> LikenessMetrics(const std::string& weights_folder);
 
 }  // namespace bodyloom

@@ -43,9 +43,9 @@ void WritePreview(const TrainingRun& run, int step, const std::vector<std::vecto
   ContactSheetOptions layout;
   layout.columns = static_cast<int>(rows.front().size());
   layout.cell_height_px = cell_height_px;
-  std::vector<Image> pictures;
-  for (const std::vector<Image>& row : rows) pictures.insert(pictures.end(), row.begin(), row.end());
-  WriteImage((fs::path(run.run_dir) / name).string(), ContactSheet(pictures, layout));
+  std::vector<Image> images;
+  for (const std::vector<Image>& row : rows) images.insert(images.end(), row.begin(), row.end());
+  WriteImage((fs::path(run.run_dir) / name).string(), ContactSheet(images, layout));
 }
 
 void FollowTraining(int steps, const PipelineCallbacks& callbacks, TrainingRun* run) {
@@ -56,7 +56,7 @@ void FollowTraining(int steps, const PipelineCallbacks& callbacks, TrainingRun* 
     for (const auto& [name, value, unit] : progress.figures) {
       stage << (stage.tellp() > 0 ? ", " : "") << name << ' ' << value << unit;
     }
-    return callbacks.GoesOn(stage.str(), static_cast<double>(progress.step) / progress.steps);
+    return callbacks.ReportProgress(stage.str(), static_cast<double>(progress.step) / progress.steps);
   };
 }
 

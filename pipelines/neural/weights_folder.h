@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// `--weights DIR`: trained weights that this project cannot ship, under fixed names.
+/// Reads trained weights that this project cannot ship from a folder (`--weights DIR`), under fixed names:
 ///
 ///   vgg16, vgg19, alexnet   torchvision's classifiers ("features.0.weight", …)
 ///   lpips_alex              LPIPS' channel weights on AlexNet ("lin0.model.1.weight", …)
@@ -16,32 +16,33 @@
 
 namespace bodyloom {
 
-/// Empty where the folder has no such file. Shapes are checked by the networks, whose messages name the file.
+/// Weights of the folder, empty where a file is missing. Shapes are checked by the networks, whose messages name the
+/// file.
 struct WeightsFolder {
   WeightsFrom vgg16, vgg19, alexnet, lpips_heads, sphereface;
 };
 
-/// `folder` empty: everything empty. Throws std::runtime_error naming the folder when it is none or has none of these
-/// files, and the file that cannot be read or holds a tensor that is no number.
+/// Reads the folder; an empty path gives empty weights. Throws std::runtime_error naming the folder if it does not
+/// exist or has none of these files, and naming a file that cannot be read or has a non-numeric tensor.
 WeightsFolder ReadWeightsFolder(const std::string& folder);
 
-/// What measures how alike pictures of people are.
+/// Weights of the perceptual similarity metrics of images of people.
 inline LikenessWeights LikenessWeightsOf(WeightsFolder weights) {
   return {std::move(weights.alexnet), std::move(weights.lpips_heads), std::move(weights.vgg19)};
 }
 
-/// "vgg19 vgg19.pth, sphereface not there", one line for the user.
+/// Text for the user in one line: "vgg19 vgg19.pth, sphereface not there".
 std::string ToText(const WeightsFolder& weights);
 
-/// SSIM of the windows that renderers draw, whole, on black: what training and animation report.
+/// SSIM of whole rendered windows on black, as training and animation report it.
 inline constexpr SsimPreset kWindowSsim = SsimPreset::kWang2004;
 inline double WindowSsim(const Image& truth, const Image& result) { return Ssim(truth, result, kWindowSsim); }
 
-// Architecture cards of a renderer's networks, which `bodyloom neural card` prints.
+// Architecture tables of a renderer's networks, printed by `bodyloom neural card`.
 
 enum class NeuralRenderer { kMotion, kPhoto, kGuided };
 
-/// Names, shapes, parameters and multiply-adds of all layers, a table. `profile`: "paper", "cpu" or "tiny". Throws
+/// Table of names, shapes, parameters and multiply-adds of all layers. `profile`: "paper", "cpu" or "tiny". Throws
 /// std::invalid_argument for other names.
 std::string NetworkCard(NeuralRenderer renderer, const std::string& profile);
 

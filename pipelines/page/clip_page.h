@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A tracked clip as one HTML file that opens from disk: the video beside the bodies in their world, turned and
-/// scrubbed by hand, a timeline of residuals, statuses and uncertainty, text, and files to take away. Nothing is
-/// fetched from elsewhere: scene, video and the script that shows them (assets/page/viewer.js) are in the page.
+/// Writes a tracked clip as one self-contained HTML file that opens from disk: the video beside an interactive view of
+/// the bodies in their world, a timeline of residuals, statuses and uncertainty, text, and files to download. Scene,
+/// video and script (assets/page/viewer.js) are embedded in the page.
 #pragma once
 
 #include <optional>
@@ -18,15 +18,15 @@ namespace bodyloom {
 struct ClipPagePerson {
   std::string name;                      ///< of the person's node in the glTF: "person_0"
   std::vector<std::string> joint_names;  ///< J
-  std::vector<FrameStatus> status;       ///< N; kLost also where the person's track has no frame
-  std::vector<double> residual_px;       ///< N; NaN where nothing is known
+  std::vector<FrameStatus> status;       ///< kLost also where the track has no frame
+  std::vector<double> residual_px;       ///< NaN where unknown
   RowMatrixXd joint_sigma_m;             ///< N×J; NaN likewise
-  std::vector<PlanEntry> plan;           ///< what ran and why
-  std::vector<TermCost> costs;           ///< of each term at the answer
+  std::vector<PlanEntry> plan;           ///< steps that ran or were skipped, with reasons
+  std::vector<TermCost> costs;           ///< cost of each term at the solution
   std::optional<WorstStretch> worst_stretch;
 };
 
-/// A file that the page gives away.
+/// A file that the page offers for download.
 struct ClipPageFile {
   std::string name, mime_type, bytes;
 };
@@ -35,17 +35,17 @@ struct ClipPageContent {
   std::string title, subtitle;
   std::vector<double> seconds;  ///< N, from the scene's start, ascending: when each frame is shown
   double fps = 30;
-  Camera camera;  ///< a width of 0: not known, no frustum is drawn
+  Camera camera;  ///< width 0: unknown, no frustum is drawn
   WorldFrame world;
   std::vector<CameraPose> world_from_cameras;  ///< N of a camera that moves, or empty
   std::vector<ClipPagePerson> people;
   std::string glb;                  ///< the scene (data_tools/export/glb_writer.h)
-  std::string video_mp4;            ///< a picture for each of the N frames, evenly `fps` a second; empty: no video
+  std::string video_mp4;            ///< one image per frame, at a constant `fps`; empty: no video
   std::string summary;              ///< lines
-  std::vector<ClipPageFile> files;  ///< beside the glTF
+  std::vector<ClipPageFile> files;  ///< downloads other than the glTF
 };
 
-/// Throws std::invalid_argument when there is no frame or nobody, or lengths differ from N and J.
+/// Renders the page. Throws std::invalid_argument without frames or people, or when lengths differ from N and J.
 std::string ClipPageHtml(const ClipPageContent& content);
 
 }  // namespace bodyloom

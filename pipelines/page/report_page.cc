@@ -37,7 +37,7 @@ std::string Figure(const std::string& content, const std::string& caption) {
   return "<figure>" + content + "<figcaption>" + EscapeHtml(caption) + "</figcaption></figure>\n";
 }
 
-/// The least of 1, 2, 5 × a power of ten that is not below `value` (positive).
+/// The smallest of 1, 2, 5 × a power of ten that is not below `value` (positive).
 double RoundUp(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double step : {1.0, 2.0, 5.0}) {
@@ -142,7 +142,7 @@ void ReportPage::AddTable(const std::vector<std::vector<std::string>>& rows) {
   body_ += "</table>\n";
 }
 
-void ReportPage::AddPicture(const std::string& bytes, const std::string& mime_type, const std::string& caption) {
+void ReportPage::AddImage(const std::string& bytes, const std::string& mime_type, const std::string& caption) {
   body_ += Figure(
       "<img alt=\"" + EscapeHtml(caption) + "\" src=\"data:" + mime_type + ";base64," + Base64(bytes) + "\">", caption);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A one-page report as a single HTML file: text, tables, curves and pictures inside it, nothing fetched from
-/// elsewhere.
+/// A one-page report as a single self-contained HTML file: text, tables, curves and images.
 #pragma once
 
 #include <string>
@@ -15,19 +14,19 @@ class ReportPage {
 
   void AddHeading(const std::string& text);
   void AddParagraph(const std::string& text);
-  /// Lines as they are typed.
+  /// Lines in a monospaced block.
   void AddCode(const std::vector<std::string>& lines);
-  /// Big numbers in a row: (value with unit, what it is).
+  /// A row of large numbers: (value with unit, label).
   void AddFigures(const std::vector<std::pair<std::string, std::string>>& figures);
-  /// A table; the first row is its head. Cells that are numbers are set to the right.
+  /// A table; the first row is its header. Numeric cells are right-aligned.
   void AddTable(const std::vector<std::vector<std::string>>& rows);
-  /// An encoded picture ("image/png", "image/jpeg") becomes part of the page.
-  void AddPicture(const std::string& bytes, const std::string& mime_type, const std::string& caption);
-  /// A video that lies beside the page, by its file name.
+  /// Embeds an encoded image ("image/png", "image/jpeg").
+  void AddImage(const std::string& bytes, const std::string& mime_type, const std::string& caption);
+  /// Links a video in the page's folder by its file name.
   void AddVideo(const std::string& file_name, const std::string& caption);
-  /// HTML as it is: whoever calls has escaped what needs it.
+  /// Raw HTML; the caller is responsible for escaping.
   void AddHtml(const std::string& html);
-  /// A curve of y over x (same length; points that are not finite leave a gap), from y = 0 up.
+  /// Plots y over x (same length; points that are not finite leave a gap), starting at y = 0.
   void AddCurve(const std::vector<double>& x, const std::vector<double>& y, const std::string& x_label,
                 const std::string& y_label);
 
@@ -37,16 +36,16 @@ class ReportPage {
   std::string title_, body_;
 };
 
-/// RFC 4648, with padding.
+/// Base64 encoding (RFC 4648) with padding.
 std::string Base64(const std::string& bytes);
 
-/// Text that a script of the page reads by its id; it must not hold "</script".
+/// Script element with data that the page's scripts read by its id; `text` must not contain "</script".
 std::string DataScript(const std::string& id, const std::string& type, const std::string& text);
 
-/// A script that the program carries (cmake/BodyloomEmbed.cmake).
+/// Script element with code embedded in the program (cmake/BodyloomEmbed.cmake).
 std::string CodeScript(const unsigned char* begin, const unsigned char* end);
 
-/// & < > " ' replaced.
+/// Escapes & < > " '.
 std::string EscapeHtml(const std::string& text);
 
 }  // namespace bodyloom

@@ -92,7 +92,7 @@ ClipPagePerson OnClock(const PersonOnPage& person, const std::vector<double>& mo
   return on_page;
 }
 
-/// The textures of the people, from pictures that come in the clock's order.
+/// Textures of the people, from images in ascending order of time.
 class PageTextures {
  public:
   PageTextures(const std::vector<PersonOnPage>& people, const TrackVideo& video) {
@@ -106,12 +106,12 @@ class PageTextures {
     }
   }
 
-  void Add(double moment, const Image& picture) {
+  void Add(double moment, const Image& image) {
     for (size_t i = 0; i < people_.size(); ++i) {
       const std::vector<double>& times = tracks_[i]->motion.timestamps;
       const auto at = std::lower_bound(times.begin(), times.end(), moment);
       if (people_[i] != nullptr && at != times.end() && *at == moment) {
-        people_[i]->Add(static_cast<int>(at - times.begin()), picture);
+        people_[i]->Add(static_cast<int>(at - times.begin()), image);
       }
     }
   }
@@ -136,8 +136,8 @@ struct Seen {
   std::vector<std::string> textures;
 };
 
-/// The video's picture of every moment, evenly spaced (where the video has none the last one stays), and what it shows
-/// of the people.
+/// The video's images at evenly spaced times (the last one is repeated where the video has none), and the people's
+/// textures.
 Seen SeenIn(const ClipPageRequest& request, const std::vector<double>& moments, double fps,
             const PipelineCallbacks& callbacks) {
   TrackVideo video(request.video, *request.people[0].track, request.video_px_from_camera_px, request.video_offset);
@@ -147,15 +147,15 @@ Seen SeenIn(const ClipPageRequest& request, const std::vector<double>& moments, 
   const AtomicPath file(request.out + ".mp4");  // never committed: only its bytes are wanted
   VideoEncoder encoder(file.temporary(), request.out, width, height, fps);
   PageTextures textures(request.people, video);
-  const size_t every = (moments.size() + kPageTexturePictures - 1) / kPageTexturePictures;
-  Image picture(width, height);
+  const size_t every = (moments.size() + kPageTextureImages - 1) / kPageTextureImages;
+  Image image(width, height);
   for (size_t i = 0; i < moments.size(); ++i) {
     callbacks.Update("report", double(i) / double(moments.size()));
     if (const Image* shown = video.At(moments[i])) {
       if (i % every == 0) textures.Add(moments[i], *shown);
-      picture = Resized(*shown, width, height);
+      image = Resized(*shown, width, height);
     }
-    encoder.Write(picture);
+    encoder.Write(image);
   }
   const std::string fault = encoder.Finish();
   if (!fault.empty()) throw std::runtime_error(request.out + ": " + fault);

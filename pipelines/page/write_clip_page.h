@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The page of a clip (clip_page.h) from tracks and the video they were made from.
+/// Writes the page of a clip (clip_page.h) from tracks and the video they were estimated from.
 #pragma once
 
 #include <functional>
@@ -14,19 +14,19 @@
 
 namespace bodyloom {
 
-/// Somebody to be shown. Pointers are borrowed; those marked so may be null.
+/// A person on the page. Pointers are borrowed; those marked so may be null.
 struct PersonOnPage {
-  int number = 0;  ///< the person is called "person_0", and so are the files that the page gives away
+  int number = 0;  ///< number in the names "person_0" of the person and its files
   const BodyModel* body = nullptr;
   const Track* track = nullptr;
   const TrackSequenceSummary* summary = nullptr;  ///< may be null: no residuals, no plan
-  std::string track_file;                         ///< given away by the page; empty: not
+  std::string track_file;                         ///< offered for download; empty: not
 };
 
 struct ClipPageRequest {
   std::string out;                   ///< .html
   std::vector<PersonOnPage> people;  ///< tracks of one camera and one clock
-  std::string video;                 ///< beside the bodies; empty: none
+  std::string video;                 ///< shown beside the bodies; empty: none
   int video_offset = 0;              ///< video frame of the tracks' time zero
   Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
   std::string title;
@@ -34,18 +34,18 @@ struct ClipPageRequest {
   int correctives = 8;  ///< shapes for pose correctives in the scene, 0 to 64
 };
 
-/// The longer side of the page's video at most, pixels: a minute of it then takes some 10 MB.
+/// Maximum longer side of the page's video, pixels: one minute takes about 10 MB.
 inline constexpr int kPageVideoPx = 640;
 
-/// Bodies wear what the video shows of them: colours of this many pictures at most, spread over the clip, in a texture
-/// of kPageTextureTexels a side.
-inline constexpr int kPageTexturePictures = 60;
+/// Bodies are textured from the video: from at most this many of its frames, spread over the clip, in a texture of
+/// kPageTextureTexels a side.
+inline constexpr int kPageTextureImages = 60;
 inline constexpr int kPageTextureTexels = 512;
 
-/// Writes the page, whole or not at all. Frames of two tracks are the same moment when their timestamps are equal. What
-/// a .bvh cannot say (lost frames, uneven time) has none among its files. Progress is told as "report". Throws
-/// std::invalid_argument when nobody is given or a track does not fit its body, std::runtime_error for files that
-/// cannot be read or written, and Cancelled.
+/// Writes the page, whole or not at all. Frames of two tracks are simultaneous if their timestamps are equal. A track
+/// that .bvh cannot represent (lost frames, uneven times) has no such file. The stage is "report". Throws
+/// std::invalid_argument without people or when a track does not fit its body, std::runtime_error for files that cannot
+/// be read or written, and Cancelled.
 void WriteClipPage(const ClipPageRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -26,7 +26,7 @@
 #include "pipelines/report_json.h"
 #include "render/garment/person_cloth.h"
 #include "render/photo_avatar/draw_person.h"
-#include "render/photo_avatar/wear_clothes.h"
+#include "render/photo_avatar/transfer_clothes.h"
 #include "render/uv_maps/posed_track.h"
 #include "render/view/view_camera.h"
 
@@ -114,7 +114,7 @@ class PersonAnimation {
     const PhotoPerson other = std::filesystem::is_directory(from) ? ReadPhotoPerson(from, photo.fit.body)
                                                                   : MakePhotoPerson(photo, callbacks_);
     try {
-      person_ = InClothesOf(person_, other);
+      person_ = TransferClothes(person_, other);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(from + ": " + error.what());
     }
@@ -123,7 +123,7 @@ class PersonAnimation {
   void OpenTrack() {
     const Track read = ReadTrack(request_.track);
     try {
-      track_ = MovedByPerson(person_, read, request_.own_stature ? PersonPlacing::kInScene : PersonPlacing::kInPicture);
+      track_ = MovedByPerson(person_, read, request_.own_stature ? PersonPlacing::kInScene : PersonPlacing::kInImage);
       if (!person_.garment.empty() && Draws()) cloth_.emplace(*person_.clothed, person_.garment, track_);
       if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
       int first = 0, last = track_.num_frames() - 1;
@@ -146,9 +146,9 @@ class PersonAnimation {
     }
     const Camera camera = CameraAt(0);
     width_ = camera.width, height_ = camera.height;
-    if (width_ < 2 || height_ < 2 || std::max(width_, height_) > kLongestPictureSide) {
-      throw std::runtime_error(Concatenate(request_.track, ": pictures of ", width_, "x", height_,
-                                           ", expected sides of 2 to ", kLongestPictureSide));
+    if (width_ < 2 || height_ < 2 || std::max(width_, height_) > kLongestImageSide) {
+      throw std::runtime_error(Concatenate(request_.track, ": images of ", width_, "x", height_,
+                                           ", expected sides of 2 to ", kLongestImageSide));
     }
     frames_.emplace(person_, std::min(threads_, std::max(1, track_.num_frames())));
   }

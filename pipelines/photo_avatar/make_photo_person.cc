@@ -32,13 +32,13 @@ FittedPhoto FitPhoto(const PhotoFitSettings& fit, const std::string& path, const
   FittedPhoto photo;
   photo.name = path;
   clock->Begin("read");
-  photo.picture = ReadImage(path);
+  photo.image = ReadImage(path);
   SceneInputs scene = LoadSceneInputs(request);
   UseFocal(request, &scene.camera.camera);
   clock->Begin("detect");
   const DetectedClip clip = DetectForTracking(request, callbacks);
   const std::vector<PersonTrack> everybody = LinkPeople(clip.people);
-  if (everybody.empty()) throw NothingToTrack(path + ": nobody was found in the photo");
+  if (everybody.empty()) throw NoPersonFound(path + ": nobody was found in the photo");
   photo.people = static_cast<int>(everybody.size());
   const PersonTrack who = PersonOf(clip.people, request.person, path);
   DetectedObservations seen = ObservationsOf(clip, who, WholeClip(clip), request, scene);
@@ -54,7 +54,7 @@ FittedPhoto FitPhoto(const PhotoFitSettings& fit, const std::string& path, const
   options.straight_knees_weight = StraightKneesWeight(request, seen.keypoints.convention);
   TrackSequenceResult result = FitClip(input, options);
   if (!result.summary.IsUsable() || !result.track.motion.HasPose(0)) {
-    throw NothingToTrack(path + ": the person could not be fitted: " + result.summary.message);
+    throw NoPersonFound(path + ": the person could not be fitted: " + result.summary.message);
   }
   photo.track = std::move(result.track);
   photo.mask = MaskOfPerson(clip, who).frames.at(0).Unpacked();
@@ -106,10 +106,10 @@ PhotoPerson MakePhotoPerson(const PhotoPersonRequest& request, const PipelineCal
 namespace {
 
 /// Half the photo, half the labels' colours.
-Image Tinted(const Image& picture, const std::vector<uint8_t>& labels) {
-  Image tinted = LabelsPicture(labels, picture.width, picture.height);
+Image Tinted(const Image& image, const std::vector<uint8_t>& labels) {
+  Image tinted = LabelsImage(labels, image.width, image.height);
   for (size_t i = 0; i < tinted.bgr.size(); ++i) {
-    tinted.bgr[i] = labels[i / 3] == 0 ? picture.bgr[i] : static_cast<uint8_t>((tinted.bgr[i] + picture.bgr[i]) / 2);
+    tinted.bgr[i] = labels[i / 3] == 0 ? image.bgr[i] : static_cast<uint8_t>((tinted.bgr[i] + image.bgr[i]) / 2);
   }
   return tinted;
 }
@@ -118,10 +118,10 @@ Image Tinted(const Image& picture, const std::vector<uint8_t>& labels) {
 
 std::vector<uint8_t> LabelsOfPhoto(const FittedPhoto& photo, const BodyModel& body, ClothesParser* parser,
                                    int num_threads) {
-  const std::vector<uint8_t> mask = MaskInPicture(photo);
+  const std::vector<uint8_t> mask = PhotoMask(photo);
   const Camera camera = photo.track.CameraAt(0);
-  if (parser != nullptr) return parser->Labels(photo.picture, mask, body, photo.track, camera, num_threads);
-  const std::vector<uint8_t> parts = PartsInPicture(body, TrackVertices(body, photo.track, 0), camera, num_threads);
+  if (parser != nullptr) return parser->Labels(photo.image, mask, body, photo.track, camera, num_threads);
+  const std::vector<uint8_t> parts = PartsInImage(body, TrackVertices(body, photo.track, 0), camera, num_threads);
   const std::vector<int> nearest = NearestMarked(parts, camera.width, camera.height);
   std::vector<uint8_t> labels(mask.size(), 0);
   for (size_t i = 0; i < mask.size(); ++i) {
@@ -130,7 +130,7 @@ std::vector<uint8_t> LabelsOfPhoto(const FittedPhoto& photo, const BodyModel& bo
   return labels;
 }
 
-Image NumbersPicture(std::span<const uint8_t> labels, int width, int height) {
+Image NumbersImage(std::span<const uint8_t> labels, int width, int height) {
   Image numbers(width, height);
   for (size_t i = 0; i < numbers.bgr.size(); ++i) numbers.bgr[i] = labels[i / 3];
   return numbers;
@@ -151,17 +151,17 @@ PhotoParseSummary ParsePhoto(const PhotoParseRequest& request, const PipelineCal
   const FittedPhoto photo = FitPhoto(request.fit, request.image, callbacks, &clock, &body);
   clock.Begin("parse");
   PhotoParseSummary summary;
-  summary.width = photo.picture.width, summary.height = photo.picture.height;
+  summary.width = photo.image.width, summary.height = photo.image.height;
   summary.labels = LabelsOfPhoto(photo, *body, parser ? &*parser : nullptr, ThreadsFor(request.fit.solve.num_threads));
   clock.Begin("write");
   const std::vector<uint8_t>& labels = summary.labels;
   for (const uint8_t label : labels) ++summary.pixels[label];
   if (!request.out.empty()) {
-    WriteImage(request.out, NumbersPicture(labels, photo.picture.width, photo.picture.height));
+    WriteImage(request.out, NumbersImage(labels, photo.image.width, photo.image.height));
     summary.written.push_back(request.out);
   }
   if (!request.picture.empty()) {
-    WriteImage(request.picture, Tinted(photo.picture, labels));
+    WriteImage(request.picture, Tinted(photo.image, labels));
     summary.written.push_back(request.picture);
   }
   clock.End();

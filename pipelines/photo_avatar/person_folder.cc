@@ -29,7 +29,7 @@ std::string PhotoFile(const std::string& folder, size_t photo) {
   return FileIn(folder, Concatenate("photo_", photo, ".npz"));
 }
 
-/// What of person.json is needed again.
+/// Fields of person.json that are read back.
 struct KeptFacts {
   LooseGarmentOptions cut = {.length_m = 0};  ///< of the garment; length 0 where there is none
   ShownLight light;                           ///< even where the file says nothing of it
@@ -100,7 +100,7 @@ void WritePhotoPerson(const std::string& folder, const PhotoPerson& person) {
   WriteOrRemove(FileIn(folder, "sources.png"), person.sources);
   const int width = person.texture.width, height = person.texture.height;
   WriteOrRemove(FileIn(folder, "labels.png"),
-                person.labels.empty() ? Image() : NumbersPicture(person.labels, width, height));
+                person.labels.empty() ? Image() : NumbersImage(person.labels, width, height));
   for (size_t i = 0; i < person.tracks.size(); ++i) WriteTrack(PhotoFile(folder, i), person.tracks[i]);
   WriteFileAtomically(FileIn(folder, "person.json"), ToJson(person));
 }
@@ -157,12 +157,12 @@ std::string ToJson(const PhotoPerson& person) {
                                    {"mirrored", report.mirrored},
                                    {"behind", report.behind},
                                    {"hair", report.hair},
-                                   {"around", report.around},
-                                   {"spread", report.spread}}},
+                                   {"limb_neighbour", report.limb_neighbour},
+                                   {"smooth_fill", report.smooth_fill}}},
                                  {"clothes_median_m", report.clothes_median_m},
                                  {"clothes_max_m", report.clothes_max_m},
-                                 {"silhouette_unlike_close", report.unlike_close},
-                                 {"silhouette_unlike_loose", report.unlike_loose},
+                                 {"mask_error_tight", report.mask_error_tight},
+                                 {"mask_error_with_garment", report.mask_error_with_garment},
                                  {"seconds", ToJson(report.seconds)}};
   for (Eigen::Index c = 0; c < 3; ++c) {
     for (Eigen::Index k = 0; k < 9; ++k) json["light"].push_back(person.light.coefficients(c, k));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person made from photos, kept in a folder:
+/// Reads and writes a person made from photos as a folder:
 ///   body.npz      the clothed body (data_tools/body/body_io.h); zero betas are the person
 ///   texture.png   for its atlas, as in even light
 ///   sources.png   where each texel's colour is from, in colours (PhotoPerson::sources)
@@ -16,14 +16,14 @@
 
 namespace bodyloom {
 
-/// The files that WritePhotoPerson() writes for so many photos.
+/// The files that WritePhotoPerson() writes for this number of photos.
 std::vector<std::string> PhotoPersonFiles(const std::string& folder, int num_photos);
 
-/// Replaces files of these names. Throws std::runtime_error naming a file that cannot be written.
+/// Writes the folder, replacing files of these names. Throws std::runtime_error naming a file that cannot be written.
 void WritePhotoPerson(const std::string& folder, const PhotoPerson& person);
 
-/// `bare_body`: what the photos were fitted with; empty: the built-in body. The report stays empty. Throws
-/// std::runtime_error naming a file that cannot be used, or saying that the bare body is another one.
+/// Reads a person. `bare_body`: the body fitted to the photos; empty: the built-in body. The report stays empty. Throws
+/// std::runtime_error naming a file that cannot be used, or when the bare body is a different one.
 PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_body);
 
 /// One JSON object.

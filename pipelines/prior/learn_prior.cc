@@ -22,7 +22,7 @@ LearnPriorReport LearnPrior(const LearnPriorRequest& request, const PipelineCall
       seconds += motion.timestamps.back() - motion.timestamps.front();
       motions.push_back(std::move(motion));
     } catch (const std::runtime_error& error) {  // licences, skeletons and readmes lie among the motions
-      callbacks.Say(std::string("left out: ") + error.what());
+      callbacks.Message(std::string("left out: ") + error.what());
     }
   }
   callbacks.Update("learn", 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A pose prior learned from a folder of motions (data_tools/learned/pose_prior_learning.h).
+/// Learns a pose prior from a folder of motions (data_tools/learned/pose_prior_learning.h).
 #pragma once
 
 #include <string>
@@ -22,8 +22,8 @@ struct LearnPriorReport {
   std::string out;
 };
 
-/// Learns from every file that holds a motion; the others are left out, each with a message. Throws std::runtime_error
-/// naming a file that cannot be used, Cancelled.
+/// Learns from every file that holds a motion; others are skipped with a message. Throws std::runtime_error naming a
+/// file that cannot be used, Cancelled.
 LearnPriorReport LearnPrior(const LearnPriorRequest& request, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -21,15 +21,15 @@
 namespace bodyloom {
 namespace {
 
-void DrawCaptions(const RenderStep& step, const RenderPicture& picture, Image* image) {
+void DrawCaptions(const RenderStep& step, const FrameRenderer& renderer, Image* image) {
   const double height = std::max(9.0, image->height / 48.0);
-  DrawCaption({{picture.Caption(step.frame, step.turn_deg)}}, Corner::kTopLeft, height, image);
-  if (const std::optional<ErrorScale> scale = picture.Scale()) {
+  DrawCaption({{renderer.Caption(step.frame, step.turn_deg)}}, Corner::kTopLeft, height, image);
+  if (const std::optional<ErrorScale> scale = renderer.Scale()) {
     const int margin = static_cast<int>(height);
     const int width = std::min(image->width - 2 * margin, static_cast<int>(26 * height));
     DrawErrorLegend(*scale, margin, image->height - margin - ErrorLegendHeight(height), width, height, image);
-  } else if (!picture.Legend().empty()) {
-    DrawCaption({{picture.Legend()}}, Corner::kBottomLeft, height, image);
+  } else if (!renderer.Legend().empty()) {
+    DrawCaption({{renderer.Legend()}}, Corner::kBottomLeft, height, image);
   }
 }
 
@@ -37,9 +37,9 @@ class VideoSink : public RenderSink {
  public:
   VideoSink(const std::string& path, const Camera& camera, double fps)
       : writer_(path, camera.width, camera.height, fps) {}
-  void Take(const RenderStep& step, const Image* background, RenderPicture* picture) override {
-    Image image = picture->Draw(step.frame, step.turn_deg, background);
-    DrawCaptions(step, *picture, &image);
+  void Take(const RenderStep& step, const Image* background, FrameRenderer* renderer) override {
+    Image image = renderer->Draw(step.frame, step.turn_deg, background);
+    DrawCaptions(step, *renderer, &image);
     writer_.Write(image);
   }
   void Finish() override { writer_.Finish(); }
@@ -52,19 +52,19 @@ class SheetSink : public RenderSink {
  public:
   SheetSink(std::string path, std::vector<std::string> title) : path_(std::move(path)), title_(std::move(title)) {}
   [[nodiscard]] std::vector<int> Wanted(int num_steps) const override { return EvenlySpreadFrames(num_steps, 12); }
-  void Take(const RenderStep& step, const Image* background, RenderPicture* picture) override {
-    const Image image = picture->Draw(step.frame, step.turn_deg, background);
-    const int width = std::max(160, static_cast<int>(std::lround(double(kPictureHeight) * image.width / image.height)));
-    // The words stand above the picture: they hide nothing and stay readable however large the picture was.
-    Image cell(width, kWords + kPictureHeight, kInkColour);
-    DrawCaption({{picture->Caption(step.frame, step.turn_deg)}}, Corner::kTopLeft, 10, &cell);
-    Paste(Resized(image, width, kPictureHeight), 0, kWords, &cell);
+  void Take(const RenderStep& step, const Image* background, FrameRenderer* renderer) override {
+    const Image image = renderer->Draw(step.frame, step.turn_deg, background);
+    const int width = std::max(160, static_cast<int>(std::lround(double(kImageHeight) * image.width / image.height)));
+    // The caption is above the image, so it covers nothing and stays readable at any image size.
+    Image cell(width, kWords + kImageHeight, kInkColour);
+    DrawCaption({{renderer->Caption(step.frame, step.turn_deg)}}, Corner::kTopLeft, 10, &cell);
+    Paste(Resized(image, width, kImageHeight), 0, kWords, &cell);
     cells_.push_back(std::move(cell));
-    scale_ = picture->Scale();
-    legend_ = scale_ ? "" : picture->Legend();
+    scale_ = renderer->Scale();
+    legend_ = scale_ ? "" : renderer->Legend();
   }
   void Finish() override {
-    const Image cells = ContactSheet(cells_, {.cell_height_px = kWords + kPictureHeight});
+    const Image cells = ContactSheet(cells_, {.cell_height_px = kWords + kImageHeight});
     std::vector<CaptionLine> head;
     for (const std::string& line : title_) {
       head.push_back({line});
@@ -82,18 +82,18 @@ class SheetSink : public RenderSink {
   }
 
  private:
-  static constexpr int kPictureHeight = 360, kWords = 36, kLegendCap = 11;
+  static constexpr int kImageHeight = 360, kWords = 36, kLegendCap = 11;
   std::string path_, legend_;
   std::optional<ErrorScale> scale_;
   std::vector<std::string> title_;
   std::vector<Image> cells_;
 };
 
-/// T×H×W×… arrays, filled picture by picture.
+/// T×H×W×… arrays, filled image by image.
 class ArraySink : public RenderSink {
  public:
   ArraySink(std::string path, RenderKind kind, const BodyModel& body, const Track& track,
-            const std::vector<RenderStep>& steps, const RenderPictureOptions& options)
+            const std::vector<RenderStep>& steps, const FrameRendererOptions& options)
       : path_(std::move(path)), kind_(kind), body_(body), options_(options) {
     const int64_t T = static_cast<int64_t>(steps.size()), H = track.camera.height, W = track.camera.width;
     switch (kind) {
@@ -128,8 +128,8 @@ class ArraySink : public RenderSink {
     AddDescription(track, steps);
   }
 
-  void Take(const RenderStep& step, const Image* background, RenderPicture* picture) override {
-    const PlacedBody placed = picture->Place(step.frame, step.turn_deg);
+  void Take(const RenderStep& step, const Image* background, FrameRenderer* renderer) override {
+    const PlacedBody placed = renderer->Place(step.frame, step.turn_deg);
     const size_t pixels = size_t(placed.camera.width) * placed.camera.height;
     if (options_.new_view) {
       const CameraPose& pose = placed.view_from_camera;
@@ -139,13 +139,13 @@ class ArraySink : public RenderSink {
       if (count_ == 0) arrays_["K"] = NdArray::FromDoubles(RowMatrixXd(placed.camera.K()).data(), {3, 3});
     }
     if (kind_ == RenderKind::kOverlay || kind_ == RenderKind::kTexture) {
-      const Image image = picture->Draw(step.frame, step.turn_deg, background);
+      const Image image = renderer->Draw(step.frame, step.turn_deg, background);
       uint8_t* rgb = reinterpret_cast<uint8_t*>(arrays_.at("rgb").bytes.data()) + 3 * pixels * count_;
       for (size_t i = 0; i < pixels; ++i) {
         for (int c = 0; c < 3; ++c) rgb[3 * i + c] = image.bgr[3 * i + 2 - c];
       }
     }
-    if (kind_ == RenderKind::kError) errors_ = picture->VertexErrors(step.frame);
+    if (kind_ == RenderKind::kError) errors_ = renderer->VertexErrors(step.frame);
     if (kind_ != RenderKind::kOverlay) Resolve(placed, pixels * count_);
     ++count_;
   }
@@ -168,7 +168,7 @@ class ArraySink : public RenderSink {
       bytes += size;
     }
     if (bytes > kLimit) {
-      throw std::runtime_error(Concatenate(path_, ": ", T, " pictures of ", W, "x", H, " would take ",
+      throw std::runtime_error(Concatenate(path_, ": ", T, " images of ", W, "x", H, " would take ",
                                            std::lround(bytes / 1e6), " MB, at most ", std::lround(kLimit / 1e6),
                                            " MB fit; choose fewer frames with --frames a:b"));
     }
@@ -239,7 +239,7 @@ class ArraySink : public RenderSink {
     }
   }
 
-  /// The buffer's box into the picture that begins at first_pixel.
+  /// Writes the buffer's box into the image that begins at first_pixel.
   template <class T>
   void Copy(const std::vector<T>& values, int channels, const Camera& camera, size_t first_pixel, NdArray* to) const {
     const PixelBox& box = buffer_.box();
@@ -253,13 +253,13 @@ class ArraySink : public RenderSink {
   std::string path_;
   RenderKind kind_;
   const BodyModel& body_;
-  RenderPictureOptions options_;
+  FrameRendererOptions options_;
   NpzArrays arrays_;
   size_t count_ = 0;
   VisibilityBuffer buffer_;
   ResolvedPixels resolved_;
   VertexNormalsOfMesh normals_;
-  std::vector<float> errors_;  // by vertex, of the picture at hand
+  std::vector<float> errors_;  // by vertex, of the current image
 };
 
 }  // namespace
@@ -273,7 +273,7 @@ std::vector<int> RenderSink::Wanted(int num_steps) const {
 std::unique_ptr<RenderSink> MakeRenderSink(const std::string& path, RenderKind kind,
                                            const std::vector<std::string>& title, const BodyModel& body,
                                            const Track& track, const std::vector<RenderStep>& steps,
-                                           const RenderPictureOptions& options, double fps) {
+                                           const FrameRendererOptions& options, double fps) {
   if (path.ends_with(".mp4")) {
     return std::make_unique<VideoSink>(path, track.camera, fps);
   }

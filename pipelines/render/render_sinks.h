@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Sinks for the pictures of RenderTrack: a video, a contact sheet, or arrays. A file appears whole at Finish(), or not
-/// at all.
+/// Sinks for the images of RenderTrack: a video, a contact sheet, or arrays. Files are written whole at Finish(), or
+/// not at all.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 #include "data_tools/formats/npz.h"
 #include "data_tools/video/video_writer.h"
-#include "pipelines/render/render_picture.h"
+#include "pipelines/render/frame_renderer.h"
 
 namespace bodyloom {
 
-/// One picture to be made: a frame of the track, and how far the camera has turned.
+/// One image to be rendered: a frame of the track, and the angle that the camera has turned.
 struct RenderStep {
   int frame = 0;
   double turn_deg = 0;
@@ -22,18 +22,18 @@ struct RenderStep {
 class RenderSink {
  public:
   virtual ~RenderSink() = default;
-  /// Of all steps, those whose pictures are wanted.
+  /// Indices of the steps whose images the sink uses.
   [[nodiscard]] virtual std::vector<int> Wanted(int num_steps) const;
-  /// Makes the picture of a step and takes it.
-  virtual void Take(const RenderStep& step, const Image* background, RenderPicture* picture) = 0;
+  /// Renders the image of a step and stores it.
+  virtual void Take(const RenderStep& step, const Image* background, FrameRenderer* image) = 0;
   virtual void Finish() = 0;
 };
 
-/// By the extension of `path`: .mp4, .png or .npz (RequestError for others). The lines of `title` head the contact
-/// sheet. Arrays of more than 2 GiB are refused (std::runtime_error).
+/// Sink by the extension of `path`: .mp4, .png or .npz (RequestError for others). The lines of `title` head the contact
+/// sheet. Throws std::runtime_error for arrays of more than 2 GiB.
 std::unique_ptr<RenderSink> MakeRenderSink(const std::string& path, RenderKind kind,
                                            const std::vector<std::string>& title, const BodyModel& body,
                                            const Track& track, const std::vector<RenderStep>& steps,
-                                           const RenderPictureOptions& options, double fps);
+                                           const FrameRendererOptions& options, double fps);
 
 }  // namespace bodyloom

@@ -24,7 +24,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kPicturesOfAHeldPose = 120, kCellsOfAHeldPose = 12;  // one turn: 4 s, or a contact sheet
+constexpr int kImagesOfAHeldPose = 120, kCellsOfAHeldPose = 12;  // one turn: 4 s, or a contact sheet
 
 void CheckOptions(const RenderTrackRequest& request) {
   const bool is_npz = request.out.ends_with(".npz");
@@ -32,7 +32,7 @@ void CheckOptions(const RenderTrackRequest& request) {
     throw RequestError("--out " + request.out + ": expected a name that ends in .mp4, .png or .npz");
   }
   if (request.what == RenderKind::kTexture && request.texture.empty()) {
-    throw RequestError("--what texture needs the picture to put on the body: give --texture FILE");
+    throw RequestError("--what texture needs the image to put on the body: give --texture FILE");
   }
   if (request.what != RenderKind::kTexture && !request.texture.empty()) {
     throw RequestError("--texture is only seen with --what texture, not with --what " + ToString(request.what));
@@ -65,7 +65,7 @@ void CheckOtherFiles(const RenderTrackRequest& request) {
 
 std::vector<RenderStep> StepsOf(const RenderTrackRequest& request, int first, int end) {
   const int frames = end - first;
-  const int held = request.out.ends_with(".png") ? kCellsOfAHeldPose : kPicturesOfAHeldPose;
+  const int held = request.out.ends_with(".png") ? kCellsOfAHeldPose : kImagesOfAHeldPose;
   const int count = request.turntable && frames == 1 ? held : frames;
   std::vector<RenderStep> steps;
   steps.reserve(static_cast<size_t>(std::max(0, count)));
@@ -132,7 +132,7 @@ RenderTrackReport RenderChecked(const RenderTrackRequest& request, const BodyMod
     if (given_truth != nullptr) truth = video->Moved(std::move(truth));
   }
 
-  RenderPictureOptions options;
+  FrameRendererOptions options;
   options.kind = request.what;
   options.new_view = request.view_yaw_deg.has_value() || request.turntable;
   options.view_yaw_deg = request.view_yaw_deg.value_or(0);
@@ -150,12 +150,12 @@ RenderTrackReport RenderChecked(const RenderTrackRequest& request, const BodyMod
     options.texture = {texels, texture.width, texture.height, 3};
   }
   const std::vector<RenderStep> steps = StepsOf(request, first, end);
-  RenderPicture picture(body, track, options, request.track);
+  FrameRenderer image(body, track, options, request.track);
   if (options.kind == RenderKind::kDepth) {
     std::vector<int> frames;
     frames.reserve(steps.size());
     for (const RenderStep& step : steps) frames.push_back(step.frame);
-    picture.SetDepthRange(frames);
+    image.SetDepthRange(frames);
   }
   const std::unique_ptr<RenderSink> sink =
       MakeRenderSink(request.out, options.kind, TitleOf(request, track, first, end), body, track, steps, options,
@@ -177,14 +177,14 @@ RenderTrackReport RenderChecked(const RenderTrackRequest& request, const BodyMod
       report.without_video += background == nullptr;
     }
     const Stopwatch draw;
-    sink->Take(steps[i], background, &picture);
+    sink->Take(steps[i], background, &image);
     report.draw_seconds += draw.seconds();
-    ++report.pictures;
-    callbacks.Update("draw", static_cast<double>(report.pictures) / static_cast<double>(wanted.size()));
+    ++report.images;
+    callbacks.Update("draw", static_cast<double>(report.images) / static_cast<double>(wanted.size()));
   }
   sink->Finish();
-  report.legend = picture.Legend();
-  if (video != nullptr && !video->warning().empty()) callbacks.Say(video->warning());
+  report.legend = image.Legend();
+  if (video != nullptr && !video->warning().empty()) callbacks.Message(video->warning());
   if (video != nullptr && end == track.num_frames()) {
     report.video_frames_left = video->FramesAfter(track.motion.timestamps.back());
   }
@@ -250,8 +250,8 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const BodyModel
 }
 
 std::string ToText(const RenderTrackReport& report) {
-  std::string text = Concatenate(report.pictures, report.pictures == 1 ? " picture" : " pictures", " of ", report.width,
-                                 "x", report.height, "\n");
+  std::string text = Concatenate(report.images, report.images == 1 ? " image" : " images", " of ", report.width, "x",
+                                 report.height, "\n");
   if (!report.legend.empty()) {
     text += report.legend + "\n";
   }
@@ -260,8 +260,8 @@ std::string ToText(const RenderTrackReport& report) {
                         " frames are lost: they are shown without a body\n");
   }
   if (report.without_video > 0) {
-    text += Concatenate(report.without_video, " of ", report.pictures,
-                        " pictures have no video frame at their time: they have a plain background\n");
+    text += Concatenate(report.without_video, " of ", report.images,
+                        " images have no video frame at their time: they have a plain background\n");
   }
   if (report.video_frames_left > 0) {
     text += Concatenate("the video goes on for ", report.video_frames_left, " frames after the track: left out\n");
@@ -277,7 +277,7 @@ std::string ToJson(const RenderTrackReport& report) {
   json["what"] = report.what;
   json["outputs"] = report.outputs;
   json["frames"] = {report.first_frame, report.first_frame + report.num_frames};
-  json["pictures"] = report.pictures;
+  json["pictures"] = report.images;
   json["frames_without_body"] = report.without_body;
   json["pictures_without_video"] = report.without_video;
   json["video_frames_left"] = report.video_frames_left;

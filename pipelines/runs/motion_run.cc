@@ -18,11 +18,11 @@ namespace bodyloom {
 namespace {
 
 constexpr const char* kMotionProgram = "bodyloom train motion";
-constexpr size_t kMostShapeComponents = 1000;
+constexpr size_t kMaxShapeComponents = 1000;
 
 Eigen::VectorXd ReadShape(const JsonNode& betas) {
-  if (!betas.is_array() || betas.size() > kMostShapeComponents) {
-    betas.Fail(Concatenate("a list of at most ", kMostShapeComponents, " numbers"));
+  if (!betas.is_array() || betas.size() > kMaxShapeComponents) {
+    betas.Fail(Concatenate("a list of at most ", kMaxShapeComponents, " numbers"));
   }
   const std::vector<double> numbers = betas.Numbers(static_cast<int>(betas.size()));
   return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
@@ -67,7 +67,7 @@ SurfaceMotion ReadMotion(const JsonNode& json) {
   return motion;
 }
 
-/// What the notes say of the data; other programs' runs may say nothing.
+/// Reads the training data from the notes, which other programs' runs may lack.
 void ReadTrained(const JsonNode& root, MotionRun* run) {
   if (!root.Has("run")) return;
   const JsonNode notes = root.At("run");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// config.json of a run of the motion-dependent renderer: what it takes to use its checkpoint.
+/// Reads and writes config.json of a run of the motion-dependent renderer: everything needed to use its checkpoint.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,15 +15,15 @@ namespace bodyloom {
 
 struct MotionRun {
   MotionConfig config;
-  double pixels_per_metre = 0;  ///< of the window: the size that the person was trained at
-  double fps = 30;              ///< of the clip; motion is shown at this rate
+  double pixels_per_metre = 0;  ///< of the window: the person's scale in training
+  double fps = 30;              ///< of the clip and of every animation
   int reach = 0;         ///< pixels that clothes reach beyond the body (neural/motion/motion_frame.h), 0: not known
-  int past = 10;         ///< velocities of so many frames
-  SurfaceMotion motion;  ///< axes and velocities of the motion maps; older runs: those that were the only ones
-  std::optional<Eigen::VectorXd> betas;  ///< the person's shape; absent in runs from before they held it
-  std::string data, track;               ///< what it was trained on, as `notes` say when a run is read; empty: unknown
-  std::vector<std::pair<int, int>> trained;  ///< frames of it, first and last; likewise
-  std::string notes;                         ///< JSON object of what else is known: data, frames, options
+  int past = 10;         ///< number of past frames in the descriptor
+  SurfaceMotion motion;  ///< axes and velocities of the motion maps; older runs: the defaults of their time
+  std::optional<Eigen::VectorXd> betas;      ///< the person's shape; absent in runs from before they held it
+  std::string data, track;                   ///< training data, from `notes` when a run is read; empty: unknown
+  std::vector<std::pair<int, int>> trained;  ///< training frames, first and last; empty: unknown
+  std::string notes;                         ///< JSON object with further data: data, frames, options
 };
 
 /// Channels of the descriptor of `past` frames: 3 + 3·past of the surface, 6·past of dense2d.
@@ -31,7 +31,7 @@ int MotionChannels(MotionDescriptor descriptor, int past);
 
 std::string MotionRunJson(const MotionRun& run);
 
-/// Of RUN/config.json. Throws std::runtime_error naming the file, the key and what was expected.
+/// Reads RUN/config.json. Throws std::runtime_error naming the file, the key and what was expected.
 MotionRun ReadMotionRun(const std::string& run_dir);
 
 }  // namespace bodyloom

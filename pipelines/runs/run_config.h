@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The config.json that every run folder of a renderer begins with.
+/// Reads and writes config.json of the renderers' run folders.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,11 +12,11 @@ namespace bodyloom {
 
 std::string RunConfigPath(const std::string& run_dir);
 
-/// RUN/config.json of a run of `program`. Throws std::runtime_error naming the file: not there, no JSON, or of another
-/// program.
+/// Reads RUN/config.json of a run of `program`. Throws std::runtime_error naming the file if it is missing, not JSON,
+/// or of another program.
 nlohmann::json ReadRunConfig(const std::string& run_dir, const std::string& program);
 
-// config.json of a run of the pose-guided renderer: what it takes to use its checkpoint.
+// Run of the pose-guided renderer: everything needed to use its checkpoint.
 
 struct GuidedRun {
   GuidedConfig config;
@@ -29,7 +29,7 @@ std::string GuidedRunJson(const GuidedRun& run);
 /// Of RUN/config.json. Throws std::runtime_error naming the file, the key and what was expected.
 GuidedRun ReadGuidedRun(const std::string& run_dir);
 
-// config.json of a run of the one-photo renderer: what it takes to use its checkpoint.
+// Run of the one-photo renderer: everything needed to use its checkpoint.
 
 struct PhotoRun {
   PhotoConfig config;

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// DIR/kind when it is there; pictures may lie in DIR itself.
+/// DIR/kind if it exists; images may also be in DIR itself.
 std::optional<std::string> FolderOf(const std::string& path, const std::string& kind) {
   const fs::path below = fs::path(path) / kind;
   if (fs::is_directory(below)) return below.string();
@@ -32,8 +32,8 @@ std::optional<std::string> FolderOf(const std::string& path, const std::string& 
   return std::nullopt;
 }
 
-/// The gap-free run of each frame by the clock of the single-person dataset that is compared, or whose pictures are;
-/// empty: there is none.
+/// Gap-free run of each frame, by the clock of the single-person dataset that is compared or contains the images; empty
+/// without one.
 std::vector<int> RunsOf(const std::string& truth) {
   const fs::path path = fs::path(truth).lexically_normal();
   for (const fs::path& place : {path, path.filename() == "images" ? path.parent_path() : path}) {
@@ -72,13 +72,13 @@ CompareResultsReport CompareResults(const CompareResultsRequest& request, const 
 
   std::vector<FrameMetric> of_images = {ImageMetric(request.preset, !request.mask.empty())};
   of_images.insert(of_images.end(), request.more.begin(), request.more.end());
-  if (!request.pictures.empty()) of_images.push_back(ErrorPictures(request.pictures, request.error_maximum));
+  if (!request.pictures.empty()) of_images.push_back(ErrorImages(request.pictures, request.error_maximum));
   const std::vector<std::pair<std::string, std::vector<FrameMetric>>> kinds = {
       {"images", of_images}, {"labels", {LabelMetric()}}, {"normals", {NormalMetric()}}};
   callbacks.Begin("metrics");
   if (!request.other_truth.empty()) {  // first: datasets that do not fit are refused before an hour of comparing
     callbacks.Update("reaction", 0);
-    report.reaction = MeasureSpeedReaction(SinglePersonDataset(request.truth), SinglePersonDataset(request.result),
+    report.reaction = MeasureSpeedResponse(SinglePersonDataset(request.truth), SinglePersonDataset(request.result),
                                            SinglePersonDataset(request.other_truth),
                                            SinglePersonDataset(request.other_result), request.reacting, num_threads);
   }
@@ -113,7 +113,7 @@ std::vector<float> PixelErrors(const Image& truth, const Image& result) {
   return errors;
 }
 
-Image ErrorPicture(const Image& truth, const Image& result, const ErrorScale& scale) {
+Image ErrorImage(const Image& truth, const Image& result, const ErrorScale& scale) {
   const std::vector<float> errors = PixelErrors(truth, result);
   Image error(truth.width, truth.height);
   for (int y = 0; y < error.height; ++y) {
@@ -124,28 +124,28 @@ Image ErrorPicture(const Image& truth, const Image& result, const ErrorScale& sc
     }
   }
   constexpr int kGap = 6;
-  // Small pictures stand in cells that are wide enough to read the words.
+  // Cells of small images are wide enough for the captions.
   const int cell = std::max(truth.width, 150), step = cell + kGap;
   const double cap = std::clamp(cell / 36.0, 7.0, 16.0);
   const int words = static_cast<int>(std::lround(2.4 * cap)), below = ErrorLegendHeight(cap) + kGap;
-  Image picture(3 * cell + 4 * kGap, words + truth.height + kGap + below, kInkColour);
+  Image image(3 * cell + 4 * kGap, words + truth.height + kGap + below, kInkColour);
   const Image* const images[] = {&truth, &result, &error};
   const char* const names[] = {"truth", "result", "error"};
   for (int i = 0; i < 3; ++i) {
     const int x = kGap + i * step;
-    DrawWords(names[i], x, static_cast<int>(std::lround(1.7 * cap)), cap, kPaperColour, &picture);
-    Paste(*images[i], x, words, &picture);
+    DrawWords(names[i], x, static_cast<int>(std::lround(1.7 * cap)), cap, kPaperColour, &image);
+    Paste(*images[i], x, words, &image);
   }
-  DrawErrorLegend(scale, kGap + 2 * step, words + truth.height + kGap, cell, cap, &picture);
-  return picture;
+  DrawErrorLegend(scale, kGap + 2 * step, words + truth.height + kGap, cell, cap, &image);
+  return image;
 }
 
-FrameMetric ErrorPictures(const std::string& folder, double maximum) {
+FrameMetric ErrorImages(const std::string& folder, double maximum) {
   FrameMetric metric;
   metric.compute = [folder, maximum](const FramePair& frame, const FramePair*) -> std::vector<double> {
     const ErrorScale scale{maximum, "grey levels", "error of a pixel"};
     WriteImage((std::filesystem::path(folder) / (frame.name + ".png")).string(),
-               ErrorPicture(frame.truth, frame.result, scale));
+               ErrorImage(frame.truth, frame.result, scale));
     return {};
   };
   return metric;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Two sets of pictures compared frame by frame, any number of metrics side by side.
+/// Compares two sets of images frame by frame with any number of metrics.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "data_tools/evaluation/speed_reaction.h"
+#include "data_tools/evaluation/speed_response.h"
 #include "data_tools/evaluation/ssim.h"
 #include "geometry/base/callbacks.h"
 #include "pipelines/score/frame_metric.h"
@@ -18,33 +18,33 @@ namespace bodyloom {
 struct CompareResultsRequest {
   std::string truth, result;                    ///< folders or videos
   std::string mask;                             ///< folder or video of masks: pixels of 128 or more count; empty: none
-  std::string other_truth, other_result;        ///< datasets of the same poses at another speed; empty: none
-  PersonLabel reacting = PersonLabel::kBottom;  ///< whose reaction to the speed is measured
+  std::string other_truth, other_result;        ///< datasets of the same poses at a different speed; empty: none
+  PersonLabel reacting = PersonLabel::kBottom;  ///< label whose response to the speed is measured
   SsimPreset preset = SsimPreset::kWang2004;
   bool common_only = false;       ///< compares the frames that both sides have, instead of requiring all
   std::vector<FrameMetric> more;  ///< further metrics of images, after PSNR and SSIM
-  std::string pictures;           ///< folder for an ErrorPicture of every pair of images; empty: none
-  double error_maximum = 64;      ///< of those: the last colour, grey levels
+  std::string pictures;           ///< folder for an ErrorImage of each pair of images; empty: none
+  double error_maximum = 64;      ///< end of the colour scale of ErrorImage, grey levels
   std::string json, csv;          ///< ToJson and ToCsv of the report; empty: not written
-  int num_threads = 0;            ///< 0: all cores; numbers are the same for any number
+  int num_threads = 0;            ///< 0: all cores; results are the same for any number
 };
 
-/// Pictures in both folders, or in images/, labels/ and normals/ below both, or two videos; writes the files requested.
-/// Throws std::runtime_error naming a file that cannot be used, Cancelled; nothing but pictures is left behind then.
+/// Compares images of two folders, of images/, labels/ and normals/ below both, or of two videos; writes the requested
+/// files. Throws std::runtime_error naming a file that cannot be used, Cancelled; only error images may be left then.
 CompareResultsReport CompareResults(const CompareResultsRequest& request, const PipelineCallbacks& callbacks = {});
 
-// Pictures of where a picture differs from the truth.
+// Visualisation of image errors.
 
-/// Distance of two pictures of one size, pixel by pixel, in grey levels: √(mean over the three channels of (a − b)²), 0
-/// to 255. The mean of its square is the MSE of psnr_db. Throws std::invalid_argument when the sizes differ.
+/// Per-pixel distance of two images of equal size, grey levels: √(mean over the three channels of (a − b)²), 0 to 255.
+/// The mean of its square is the MSE of psnr_db. Throws std::invalid_argument when the sizes differ.
 std::vector<float> PixelErrors(const Image& truth, const Image& result);
 
-/// Truth, result and their distance side by side, each at its own size under its name, and the legend of the colours
+/// Truth, result and their distance side by side, each captioned and at its own size, with the legend of the colours
 /// below the distance.
-Image ErrorPicture(const Image& truth, const Image& result, const ErrorScale& scale);
+Image ErrorImage(const Image& truth, const Image& result, const ErrorScale& scale);
 
-/// A metric without columns that writes the ErrorPicture of every frame to FOLDER/NAME.png, the last colour at
+/// A metric without columns that writes the ErrorImage of every frame to FOLDER/NAME.png; the colour scale ends at
 /// `maximum` grey levels.
-FrameMetric ErrorPictures(const std::string& folder, double maximum);
+FrameMetric ErrorImages(const std::string& folder, double maximum);
 
 }  // namespace bodyloom

@@ -81,12 +81,12 @@ Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track
                            "one of them, or a track file");
 }
 
-/// How deep the parts of the tracked body, and of the true one, lie in each other.
+/// Adds the self-penetration of the tracked body and of the true one.
 void AddSelfPenetrationOf(const Track& track, const std::optional<Motion>& true_motion, const BodyModel& body,
                           const PipelineCallbacks& callbacks, Evaluation* evaluation) {
   if (track.motion.poses.cols() > 3 * body.num_joints() || track.motion.betas.size() > body.num_betas()) {
-    callbacks.Say("self-penetration is left out: the track is not of the body '" + body.name() +
-                  "'; give the track's own with --body");
+    callbacks.Message("self-penetration is left out: the track is not of the body '" + body.name() +
+                      "'; give the track's own with --body");
     return;
   }
   SelfPenetrationOptions options;
@@ -100,7 +100,7 @@ void AddSelfPenetrationOf(const Track& track, const std::optional<Motion>& true_
   if (true_motion) add(*true_motion, "gt_");
 }
 
-/// What must hold before anything is measured, but for the track's and the body's files. `truth`: given in memory.
+/// Checks the request and its files, except the track and the body. `truth`: given in memory.
 void CheckEvaluation(const EvaluateTrackRequest& request, const Track* truth) {
   if ((!request.truth.empty() || truth != nullptr) && !request.seen.empty()) {
     throw RequestError(

@@ -12,7 +12,7 @@ namespace {
 
 const PixelMask* MaskOf(const FramePair& frame) { return frame.mask ? &*frame.mask : nullptr; }
 
-/// The labels of a grey picture.
+/// Labels of a grey image.
 std::vector<uint8_t> LabelsOf(const Image& image, const std::string& where) {
   std::vector<uint8_t> labels(image.bgr.size() / 3);
   for (size_t i = 0; i < labels.size(); ++i) {
@@ -20,7 +20,7 @@ std::vector<uint8_t> LabelsOf(const Image& image, const std::string& where) {
     const size_t x = i % image.width, y = i / image.width;
     if (bgr[0] != bgr[1] || bgr[1] != bgr[2]) {
       throw std::runtime_error(
-          Concatenate(where, ": pixel (", x, ", ", y, ") is coloured, expected a grey picture of labels"));
+          Concatenate(where, ": pixel (", x, ", ", y, ") is coloured, expected a grey image of labels"));
     }
     if (bgr[0] >= kNumPersonLabels) {
       throw std::runtime_error(Concatenate(where, ": pixel (", x, ", ", y, "): label ", int{bgr[0]}, ", expected 0 to ",
@@ -35,10 +35,10 @@ std::vector<uint8_t> LabelsOf(const Image& image, const std::string& where) {
 
 FrameMetric ImageMetric(SsimPreset preset, bool has_mask) {
   FrameMetric metric;
-  metric.columns = {{"psnr_db", "10 log10(255^2 / MSE) of the whole picture"}};
+  metric.columns = {{"psnr_db", "10 log10(255^2 / MSE) of the whole image"}};
   if (has_mask) metric.columns.push_back({"psnr_mask_db", "the same of the pixels in the mask"});
   const bool boxed = has_mask && preset == SsimPreset::kNeuralBody;
-  metric.columns.push_back({"ssim_" + ToText(preset), boxed ? "SSIM of the mask's box" : "SSIM of the whole picture"});
+  metric.columns.push_back({"ssim_" + ToText(preset), boxed ? "SSIM of the mask's box" : "SSIM of the whole image"});
   metric.compute = [preset, has_mask](const FramePair& frame, const FramePair*) {
     std::vector<double> values = {Psnr(frame.truth, frame.result)};
     if (has_mask) values.push_back(Psnr(frame.truth, frame.result, MaskOf(frame)));

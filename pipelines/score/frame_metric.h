@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Metrics of a frame against its truth: PSNR and SSIM of pictures, overlap of labels, angles of normals.
+/// Metrics of a frame against its truth: PSNR and SSIM of images, overlap of labels, angles of normals.
 #pragma once
 
 #include <functional>
@@ -16,18 +16,17 @@ struct MetricColumn {
   std::string meaning;  ///< one line
 };
 
-/// Something computed of every frame: one value a column, NaN where there is nothing to measure. `before` is the frame
-/// before in the sequence, nullptr where there is none to follow: at the first, and after a cut (FramePair::follows).
-/// Called from several threads at once.
+/// A metric of a frame: one value per column, NaN where nothing can be measured. `before` is the previous frame of the
+/// sequence; nullptr for the first frame and after a cut (FramePair::follows). Called from several threads at once.
 struct FrameMetric {
   std::vector<MetricColumn> columns;
   std::function<std::vector<double>(const FramePair& frame, const FramePair* before)> compute;
 };
 
-/// PSNR and SSIM of colour pictures, with a mask also PSNR inside it.
+/// PSNR and SSIM of colour images, with a mask also PSNR inside it.
 FrameMetric ImageMetric(SsimPreset preset, bool has_mask);
-/// Overlap of the seven labels of a single-person dataset (grey pictures of 0..6), of all but the background, and
-/// accuracy.
+/// Mean IoU of the labels of a single-person dataset (grey images of 0..6), accuracy, IoU of all but the background,
+/// and IoU of each label.
 FrameMetric LabelMetric();
 /// Angle between normals, n = 2c/255 − 1; inside the mask where there is one.
 FrameMetric NormalMetric();

@@ -20,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <typename Picture>
-void RequireSize(const Picture& picture, const Image& truth, const std::string& where) {
-  if (picture.width == truth.width && picture.height == truth.height) return;
-  throw std::runtime_error(Concatenate(where, ": ", picture.width, "x", picture.height, " pixels, expected ",
-                                       truth.width, "x", truth.height, " as the truth has"));
+template <typename Pixels>
+void RequireSize(const Pixels& image, const Image& truth, const std::string& where) {
+  if (image.width == truth.width && image.height == truth.height) return;
+  throw std::runtime_error(Concatenate(where, ": ", image.width, "x", image.height, " pixels, expected ", truth.width,
+                                       "x", truth.height, " as the truth has"));
 }
 
 using FilesByName = std::map<std::string, std::string>;
@@ -33,12 +33,12 @@ FilesByName FilesOf(const std::string& folder) {
   FilesByName files;
   for (const std::string& path : ImageFilesOf(folder)) {
     const auto [it, is_new] = files.emplace(fs::path(path).stem().string(), path);
-    if (!is_new) throw std::runtime_error(path + ": a second picture of this name beside " + it->second);
+    if (!is_new) throw std::runtime_error(path + ": a second image of this name beside " + it->second);
   }
   return files;
 }
 
-/// How many names of `of` are missing in `in`, with the first of them.
+/// Number of names of `of` missing in `in`, and the first of them.
 std::pair<int, std::string> Missing(const FilesByName& of, const FilesByName& in) {
   std::pair<int, std::string> missing;
   for (const auto& [name, path] : of) {
@@ -48,7 +48,7 @@ std::pair<int, std::string> Missing(const FilesByName& of, const FilesByName& in
   return missing;
 }
 
-/// Whether frames `before` and `now` are in one run; those that the runs do not know are.
+/// Returns true if frames `before` and `now` are in one run, or if either is unknown to the runs.
 bool InOneRun(const std::vector<int>& runs, int64_t before, int64_t now) {
   const auto count = static_cast<int64_t>(runs.size());
   return before < 0 || now < 0 || before >= count || now >= count || runs[before] == runs[now];
@@ -83,7 +83,7 @@ class FolderPairs : public FramePairs {
       if (result_.count(name) > 0) names_.push_back(name);
     }
     if (names_.empty()) {
-      throw std::runtime_error(result + ": no picture has the name of one in " + truth + " ('" + truth_.begin()->first +
+      throw std::runtime_error(result + ": no image has the name of one in " + truth + " ('" + truth_.begin()->first +
                                "', …)");
     }
     follows_ = FollowersAmong(names_, runs);
@@ -127,7 +127,7 @@ class FolderPairs : public FramePairs {
   static void RequireNone(const std::pair<int, std::string>& missing, const std::string& where,
                           const std::string& other) {
     if (missing.first == 0) return;
-    throw std::runtime_error(Concatenate(where, ": no picture '", missing.second, "', which ", other, " has (",
+    throw std::runtime_error(Concatenate(where, ": no image '", missing.second, "', which ", other, " has (",
                                          missing.first, " are missing; --common compares the common ones alone)"));
   }
 

@@ -92,7 +92,7 @@ nlohmann::ordered_json NumberOrNull(double value) {
 
 const char* NameOf(PersonLabel label) { return kPersonLabelNames[static_cast<size_t>(label)]; }
 
-std::string ToText(const SpeedReaction& reaction) {
+std::string ToText(const SpeedResponse& reaction) {
   std::string text = std::string("reaction of \"") + NameOf(reaction.label) +
                      "\" to the speed: " + std::to_string(reaction.pairs) + " pairs of equal poses\n";
   char line[200];
@@ -100,14 +100,14 @@ std::string ToText(const SpeedReaction& reaction) {
                 reaction.result_iou);
   text += line;
   for (size_t k = 0; k < reaction.extents.size(); ++k) {
-    const SpeedReaction::OfExtent& extent = reaction.extents[k];
+    const SpeedResponse::OfExtent& extent = reaction.extents[k];
     std::snprintf(line, sizeof line,
                   "  %-9s changes by ±%.4f, in the result by ±%.4f; correlation %6.3f, slope %6.3f\n",
                   LabelExtent::kNames[k], extent.truth_std, extent.result_std, extent.correlation, extent.slope);
     text += line;
   }
   text += "  by how much the truth differs, a quarter of the pairs each:\n";
-  for (const SpeedReaction::Quarter& quarter : reaction.quarters) {
+  for (const SpeedResponse::Quarter& quarter : reaction.quarters) {
     std::snprintf(line, sizeof line,
                   "  truth's IoU between the speeds %.4f: result's IoU with the truth %.4f, at the other speed %.4f\n",
                   quarter.between_speeds, quarter.iou, quarter.other_iou);
@@ -116,17 +116,17 @@ std::string ToText(const SpeedReaction& reaction) {
   return text;
 }
 
-nlohmann::ordered_json ReactionJson(const SpeedReaction& reaction) {
+nlohmann::ordered_json ReactionJson(const SpeedResponse& reaction) {
   nlohmann::ordered_json extents = nlohmann::ordered_json::object();
   for (size_t k = 0; k < reaction.extents.size(); ++k) {
-    const SpeedReaction::OfExtent& extent = reaction.extents[k];
+    const SpeedResponse::OfExtent& extent = reaction.extents[k];
     extents[LabelExtent::kNames[k]] = {{"truth_std", extent.truth_std},
                                        {"result_std", extent.result_std},
                                        {"correlation", NumberOrNull(extent.correlation)},
                                        {"slope", NumberOrNull(extent.slope)}};
   }
   nlohmann::ordered_json quarters = nlohmann::ordered_json::array();
-  for (const SpeedReaction::Quarter& quarter : reaction.quarters) {
+  for (const SpeedResponse::Quarter& quarter : reaction.quarters) {
     quarters.push_back({{"pairs", quarter.pairs},
                         {"between_speeds", quarter.between_speeds},
                         {"iou", quarter.iou},

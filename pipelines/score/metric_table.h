@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Metrics of one kind of picture: a row a frame, a column a metric.
+/// Tables of metrics, with one row per frame and one column per metric, and the report made of them.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/evaluation/speed_reaction.h"
+#include "data_tools/evaluation/speed_response.h"
 #include "pipelines/score/frame_metric.h"
 
 namespace bodyloom {
@@ -17,7 +17,7 @@ struct MetricRow {
   std::vector<double> values;  ///< as many as columns
 };
 
-/// One kind of picture: "images", "labels" or "normals".
+/// Table of one kind of image: "images", "labels" or "normals".
 struct MetricTable {
   std::string kind;
   std::vector<MetricColumn> columns;
@@ -28,7 +28,7 @@ struct MetricTable {
 struct ColumnSummary {
   double mean = 0, std = 0;  ///< over the finite values (std of the population); NaN when there are none
   int finite = 0;
-  int infinite = 0;   ///< PSNR of equal pictures
+  int infinite = 0;   ///< PSNR of equal images
   int undefined = 0;  ///< NaN: nothing to measure
 };
 ColumnSummary Summarise(const MetricTable& table, size_t column);
@@ -37,21 +37,21 @@ ColumnSummary Summarise(const MetricTable& table, size_t column);
 MetricTable CompareFrames(const std::string& kind, FramePairs* frames, const std::vector<FrameMetric>& metrics,
                           int num_threads, const std::function<void(double fraction)>& progress = {});
 
-// The report of a comparison of two sets of pictures: as text, as JSON, and as a table of frames.
+// Report of a comparison of two sets of images: as text, as JSON, and as a table of frames.
 
 struct CompareResultsReport {
   std::string truth, result, mask, preset;
   std::vector<MetricTable> tables;
-  std::vector<std::string> only_one_side;  ///< kinds that one side alone has, not compared
-  std::optional<SpeedReaction> reaction;
+  std::vector<std::string> only_one_side;  ///< kinds present on one side only, not compared
+  std::optional<SpeedResponse> reaction;
   double seconds = 0;
 };
 
-/// A line a column: mean, standard deviation, frames.
+/// One line per column: mean, standard deviation, frames.
 std::string ToText(const CompareResultsReport& report);
-/// The same as one JSON object (docs/image_metrics.md); what is not finite is null.
+/// The same as one JSON object (docs/image_metrics.md); non-finite values are null.
 std::string ToJson(const CompareResultsReport& report);
-/// A line a frame, all kinds side by side; empty where a kind lacks the frame; nan and inf as such.
+/// One line per frame, all kinds side by side; empty where a kind lacks the frame; nan and inf are written as such.
 std::string ToCsv(const CompareResultsReport& report);
 
 }  // namespace bodyloom

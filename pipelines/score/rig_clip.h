@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One person as the calibrated cameras of a rig saw it, from files: a calibration and each camera's detections.
+/// Reads one person's multi-view clip from files: a calibration and the detections of each camera of a rig.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace bodyloom {
 
-/// What one camera saw.
+/// Detections of one camera.
 struct RigDetections {
   std::string view;        ///< name of the camera in the calibration
   int person = 0;          ///< in the order of LinkPeople()
@@ -20,10 +20,11 @@ struct RigDetections {
 /// "VIEW=FILE" or "VIEW:PERSON=FILE". Throws RequestError saying what was expected.
 RigDetections RigDetectionsFromText(const std::string& text);
 
-/// The clip from the track's first frame on. The cameras ran together: their frames of one number are one moment, and
-/// the frame of the track's first timestamp is looked up in the detections of `view`, the camera that it was fitted to.
-/// Joints are triangulated (triangulated_clip.h). Throws RequestError when there are fewer than two cameras or `view`
-/// is none of them, std::runtime_error naming a file that cannot be used or whose frames do not reach the track.
+/// Reads the clip from the track's first frame on. The cameras are synchronised: equal frame numbers are the same
+/// moment, and the frame of the track's first timestamp is looked up in the detections of `view`, the camera that the
+/// track was fitted to. Joints are triangulated (triangulated_clip.h). Throws RequestError for fewer than two cameras
+/// or if `view` is none of them, std::runtime_error naming a file that cannot be used or whose frames do not reach the
+/// track.
 MultiViewClip ReadRigClip(const std::string& cameras, const std::vector<RigDetections>& seen, const std::string& view,
                           const Track& track);
 

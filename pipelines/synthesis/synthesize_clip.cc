@@ -41,11 +41,11 @@ void RenderClip(const std::string& path, const BodyModel& body, const Track& tru
   VideoWriter writer(path, backdrop.width, backdrop.height, VideoFrameRate(truth.motion.timestamps));
   for (int t = 0; t < truth.num_frames(); ++t) {
     callbacks.Update("clip", static_cast<double>(t) / truth.num_frames());
-    Image picture = backdrop;
+    Image image = backdrop;
     MatrixX3d vertices = TrackVertices(body, truth, t);
     if (truth.HasMovingCamera()) vertices = MovedPoints(truth.camera_from_scene[size_t(t)], vertices);
-    DrawMesh(vertices, body.data().faces, truth.CameraAt(t), style, &picture);
-    writer.Write(picture);
+    DrawMesh(vertices, body.data().faces, truth.CameraAt(t), style, &image);
+    writer.Write(image);
   }
   writer.Finish();
 }

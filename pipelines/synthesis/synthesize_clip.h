@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip with known truth, as files: motion in, observations and truth out (data_tools/synthesis/clips/synth_clip.h).
+/// Synthesises a clip with known truth: motion in, observations and truth out
+/// (data_tools/synthesis/clips/synth_clip.h).
 #pragma once
 
 #include <string>
@@ -19,7 +20,7 @@ struct SynthesizeClipRequest {
   SynthClipOptions clip;
 };
 
-/// Paths of what SynthesizeClip writes into its folder.
+/// Paths of the files that SynthesizeClip writes.
 struct SynthClipFiles {
   std::string observations;  ///< observations.npz: 2D joints and dense keypoints
   std::string truth;         ///< truth.npz: the true track
@@ -34,14 +35,14 @@ struct SynthesizeClipReport {
   SynthClipFiles files;
 };
 
-/// The faults of a dense detector and of a 2D detector together, as sizes that real ones have: UV noise 0.02, 8 bits,
-/// 5 % outliers, each part missing 5 % of the time.
+/// Sets the errors of a dense and a 2D detector to realistic values: UV noise 0.02, 8 bits, 5 % outliers, each part
+/// missing 5 % of the time.
 void UseRealisticFaults(SynthClipOptions* options);
 
 /// Makes the clip and writes its files. Throws std::runtime_error naming the file that cannot be used, Cancelled.
 SynthesizeClipReport SynthesizeClip(const SynthesizeClipRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// Counts of what was made and of its faults, and the files: some lines for a reader.
+/// Counts of observations and of their errors, and the files: several lines of text.
 std::string ToText(const SynthesizeClipReport& report);
 
 }  // namespace bodyloom

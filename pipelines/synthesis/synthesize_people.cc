@@ -87,11 +87,11 @@ SynthesizePeopleReport SynthesizePeople(const SynthesizePeopleRequest& request, 
   callbacks.Begin("dressing " + std::to_string(set.people) + " people");
   bool cancelled = false;
   set.progress = [&](double done) {
-    cancelled = cancelled || !callbacks.GoesOn("people", done);
+    cancelled = cancelled || !callbacks.ReportProgress("people", done);
     return !cancelled;
   };
   report.set = MakeMultiPersonDataset(request.out, *body, motions, set);
-  if (cancelled || !callbacks.GoesOn("people", 1)) throw Cancelled();
+  if (cancelled || !callbacks.ReportProgress("people", 1)) throw Cancelled();
   report.outputs = {request.out};
   if (!request.sheet.empty()) {
     WriteImage(request.sheet, PeopleSheet(request.out));
@@ -106,9 +106,9 @@ std::string ToText(const SynthesizePeopleReport& report) {
     text << report.motions_too_short << " motions were too short for a clip and left out\n";
   }
   const double minutes = report.set.seconds / 60;
-  text << report.set.pictures << " pictures of " << report.people << " people in " << ClockText(report.set.seconds)
-       << ", " << static_cast<int>(report.set.pictures / minutes) << " a minute; " << report.set.pairs
-       << " pairs of two pictures of one person\n";
+  text << report.set.images << " images of " << report.people << " people in " << ClockText(report.set.seconds) << ", "
+       << static_cast<int>(report.set.images / minutes) << " a minute; " << report.set.pairs
+       << " pairs of two images of one person\n";
   for (const std::string& path : report.outputs) text << "wrote            " << path << "\n";
   return text.str();
 }

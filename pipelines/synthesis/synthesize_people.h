@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pictures of many dressed people with known truth (data_tools/synthesis/people/make_multi_person_dataset.h).
+/// Synthesises images of many clothed people with known truth
+/// (data_tools/synthesis/people/make_multi_person_dataset.h).
 #pragma once
 
 #include <string>

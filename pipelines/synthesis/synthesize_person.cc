@@ -26,7 +26,7 @@ std::string CommandLine(const SynthesizePersonRequest& c) {
   for (const std::string& motion : c.motions) line += " --motion " + motion;
   line += " --out " + c.out + " --garment " + ToString(c.set.garment);
   if (c.set.style != ClothesStyle::kPatterned) line += " --clothes " + ToString(c.set.style);
-  if (c.set.stuff != ClothStuff::kCotton) line += " --stuff " + ToString(c.set.stuff);
+  if (c.set.material != ClothMaterial::kCotton) line += " --material " + ToString(c.set.material);
   if (c.set.light_style != LightStyle::kStudio) line += " --light-style " + ToString(c.set.light_style);
   line += " --seed " + std::to_string(c.set.seed);
   if (c.set.light_seed) line += " --light-seed " + std::to_string(*c.set.light_seed);
@@ -44,7 +44,7 @@ std::string CommandLine(const SynthesizePersonRequest& c) {
   return c.body.empty() ? line : line + " --body " + c.body;
 }
 
-/// "linear": pictures are the surface's numbers times the light.
+/// "linear": pixel values are the surface's colours times the light.
 nlohmann::ordered_json LightJson(const PersonLight& light) {
   nlohmann::ordered_json lights = nlohmann::ordered_json::array();
   for (size_t k = 0; k < light.towards.size(); ++k) {
@@ -79,7 +79,7 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
     if (motion != "demo") RequireReadable(motion, "motion");
   }
   if (!(request.motion.fps > 0) && request.speeds != std::vector<double>{1}) {
-    throw RequestError("--speed needs --fps: the rate of the pictures");
+    throw RequestError("--speed needs --fps: the rate of the images");
   }
   RequireReadable(request.body, "body model");
   RequireWritableFolder(request.out);
@@ -97,18 +97,18 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
   callbacks.Begin("dressing " + std::to_string(motion.num_frames()) + " frames");
   bool cancelled = false;
   set.progress = [&](double done) {
-    cancelled = !callbacks.GoesOn("person", done);
+    cancelled = !callbacks.ReportProgress("person", done);
     return !cancelled;
   };
   PersonSheet sheet(motion.num_frames());
   if (!request.sheet.empty()) set.look = [&](int t, const PersonFrame& frame) { sheet.Take(t, frame); };
   SynthesizePersonReport report;
   report.set = MakeSinglePersonDataset(request.out, *body, motion, set);
-  if (cancelled || !callbacks.GoesOn("person", 1)) throw Cancelled();
+  if (cancelled || !callbacks.ReportProgress("person", 1)) throw Cancelled();
   report.size_px = set.size_px;
   report.outputs = {request.out};
   if (!request.sheet.empty()) {
-    WriteImage(request.sheet, sheet.Picture());
+    WriteImage(request.sheet, sheet.Draw());
     report.outputs.push_back(request.sheet);
   }
   if (!request.light.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pictures of one dressed person with known truth: motions in, a single-person dataset out
+/// Synthesises images of one clothed person with known truth: motions in, a single-person dataset out
 /// (data_tools/synthesis/people/make_single_person_dataset.h).
 #pragma once
 
@@ -26,7 +26,7 @@ struct SynthesizePersonRequest {
 
 struct SynthesizePersonReport {
   MakeSinglePersonDatasetSummary set;
-  int size_px = 0;                   ///< of the pictures
+  int size_px = 0;                   ///< of the images
   std::vector<std::string> outputs;  ///< the folder, the sheet, the light
 };
 

@@ -84,7 +84,7 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
   PersonTexture texture(*body, track, request.texture);
   clock.Begin("gather");
   const Gathered gathered = Gather(request, track, &video, &texture, callbacks);
-  if (!video.warning().empty()) callbacks.Say(video.warning());
+  if (!video.warning().empty()) callbacks.Message(video.warning());
   clock.Begin("merge");
   const std::optional<PersonTextureImages> images = texture.Merge();
   if (!images) {

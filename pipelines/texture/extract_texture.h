@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The tracked person's texture, taken from the frames of the video (render/texture/texture_extract.h).
+/// Extracts the tracked person's texture from the frames of the video (render/texture/texture_extract.h).
 #pragma once
 
 #include <string>
@@ -15,9 +15,9 @@ struct ExtractTextureRequest {
   std::string video;       ///< the video, or a folder of images
   std::string body;        ///< the track's body; empty: the built-in one
   std::string out;         ///< the texture, .png or .jpg
-  std::string confidence;  ///< how well each texel was seen, as a grey image; empty: none
+  std::string confidence;  ///< visibility of each texel as a grey image; empty: none
   std::string json;        ///< ToJson(ExtractTextureReport); empty: none
-  int every = 1;           ///< looks at every n-th frame
+  int every = 1;           ///< use every n-th frame
   PersonTextureOptions texture;
 };
 
@@ -29,18 +29,19 @@ struct ExtractTextureReport {
   int frames_without_fit = 0;   ///< lost or only interpolated, left out
   int frames_beyond_video = 0;  ///< past the end of the video
   int edge_margin_px = 0;       ///< as used
-  int texels = 0;               ///< that show the body
-  int texels_seen = 0;          ///< of them in at least one frame
+  int texels = 0;               ///< texels of the body
+  int texels_seen = 0;          ///< of them, seen in at least one frame
   bool filled = false;
   StageSeconds seconds;
   double total_seconds = 0;
 };
 
-/// Gathers, merges, fills and writes. Throws std::runtime_error naming a file that cannot be used, a body without UV
-/// coordinates or a clip in which the body is never seen; RequestError for a file both read and written; Cancelled.
+/// Extracts, merges, fills and writes the texture. Throws std::runtime_error naming a file that cannot be used, for a
+/// body without UV coordinates or a clip in which the body is never seen; RequestError for a file both read and
+/// written; Cancelled.
 ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// Some lines for a reader, the last one with a newline.
+/// Several lines of text ending in a newline.
 std::string ToText(const ExtractTextureReport& report);
 /// The same as one JSON object.
 std::string ToJson(const ExtractTextureReport& report);

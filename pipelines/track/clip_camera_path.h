@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The path of a clip's camera as a request names it, at the clip's frames.
+/// Poses of a moving camera at the clip's frames, from the path that a request names.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,33 +14,31 @@
 
 namespace bodyloom {
 
-/// What became of a path: for the report.
+/// Report of the use of a camera path.
 struct CameraPathReport {
-  std::string file;             ///< empty: the camera stands still
-  int poses = 0;                ///< in the clip's time
+  std::string file;             ///< empty: the camera is static
+  int poses = 0;                ///< poses within the clip's time
   int interpolated = 0;         ///< frames between two poses of the path
   int beyond = 0;               ///< frames before its first or after its last pose
-  bool by_sorted_name = false;  ///< the pictures' names have no number, they were counted
+  bool by_sorted_name = false;  ///< images are matched by sorted name, as their names have no numbers
 };
 
-/// camera_from_scene of each of the frames, which are at `clip_seconds` (the whole clip's), at `seconds`. Throws
-/// std::runtime_error naming the file when they are not on the path, or too far from what is known of it.
+/// Interpolates camera_from_scene at the frames' times `seconds`; `clip_seconds` are the times of the whole clip.
+/// Throws std::runtime_error naming the file when the frames are not on the path, or too far from its poses.
 std::vector<CameraPose> CamerasAt(const TrackSettings& request, const RecordedCameraPath& path,
                                   std::span<const double> clip_seconds, std::span<const double> seconds,
                                   CameraPathReport* report);
 
-/// TrackSequenceInput::camera_scale_m: the request's, 1 for a path in metres, else 0.
+/// Value of TrackSequenceInput::camera_scale_m: the request's; 1 for a path in metres; otherwise 0.
 double CameraScaleOf(const SceneRequest& request, const RecordedCameraPath& path);
 
-/// Two lines: how many poses, and the scale and how it was found; nothing for a camera that stands still.
+/// Two lines with the number of poses, and the scale and its source; empty for a static camera.
 std::string ToText(const CameraPathReport& report, const CameraPathSummary& solved);
-/// Of a camera that is said to stand still: empty, or one line when feet that the lifter calls standing move faster
-/// than they do under such a camera (docs/lab/moving_camera.md).
+/// Warning for a camera assumed to be static: one line if feet that the lifter labels as standing move faster than they
+/// do under a static camera (docs/lab/moving_camera.md); otherwise empty.
 std::string MovingCameraWarning(const CameraPathSummary& solved, const GroundSummary& ground);
 
-// What became of a camera's path, for a program.
-
-/// The report's fields, and the scale and how it was found.
+/// The report's fields, and the scale and its source, as JSON.
 nlohmann::ordered_json ToJson(const CameraPathReport& report, const CameraPathSummary& solved);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// People detected in a video, as observations for the tracker: in the pixels of its camera.
+/// Converts people detected in a video to observations of the tracker, in the pixels of its camera.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace bodyloom {
 
-/// What one person showed.
+/// Observations of one person.
 struct DetectedObservations {
   KeypointSequence keypoints;
   std::optional<PartLabelSequence> mask;  ///< none when the request uses no masks
@@ -24,28 +24,28 @@ struct DetectedObservations {
 /// First and last frame, both included.
 using ClipFrames = std::pair<int, int>;
 ClipFrames WholeClip(const DetectedClip& clip);
-/// From the person's first detection to the last.
+/// From the person's first to the last detection.
 ClipFrames SpanOf(const PersonTrack& person);
 
-/// What the request's fields say of detection; at most `max_people` at a time (0: everybody).
+/// Detection request made of the request's fields, with at most `max_people` people at a time (0: everybody).
 DetectPeopleRequest DetectionOf(const TrackSettings& request, int max_people = 0);
 
 /// DetectPeople() by DetectionOf().
 DetectedClip DetectForTracking(const TrackSettings& request, const PipelineCallbacks& callbacks, int max_people = 0);
 
-/// The person's landmarks and mask in those frames; where it was not seen they are missing. Landmarks whose confidence
-/// is below request.min_confidence are missing too. Throws std::runtime_error when the scene's camera is for images of
-/// other proportions than the video's.
+/// The person's landmarks and mask in these frames, missing where the person was not detected. Landmarks with a
+/// confidence below request.min_confidence are also missing. Throws std::runtime_error when the aspect ratio of the
+/// scene's camera differs from the video's.
 DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, ClipFrames frames,
                                     const TrackSettings& request, const SceneInputs& scene);
 
-// Observations made in a video's pixels, moved into those of the camera that its calibration describes.
+// Transformation of observations from a video's pixels to those of its calibrated camera.
 
-/// Keypoints at p become those at q with p = video_from_camera · (q, 1). The image size becomes the camera's.
+/// Moves keypoints at p to q with p = video_from_camera · (q, 1). The image size becomes the camera's.
 KeypointSequence MovedToCamera(KeypointSequence keypoints, const Matrix2x3d& video_from_camera, int camera_width,
                                int camera_height);
 
-/// Labels: each pixel of the camera's image takes the label of the video's pixel next to its place.
+/// Resamples labels: each pixel of the camera's image takes the label of the nearest pixel of the video.
 PartLabelSequence MovedToCamera(const PartLabelSequence& labels, const Matrix2x3d& video_from_camera, int camera_width,
                                 int camera_height);
 

@@ -16,41 +16,42 @@ constexpr int kSmplJoints = 24, kSmplHandColumns = 6;
 
 const PersonEstimate& ChoosePerson(const BodyEstimate& estimate, const InitialPosesRequest& request) {
   const int people = static_cast<int>(estimate.people.size());
-  // One person of the whole video, or of a picture, needs no search.
+  // A single person needs no search if the file covers the whole video or a single image.
   if (people == 1 && (estimate.num_frames > 0 || request.num_frames == 1)) return estimate.people[0];
   if (request.keypoints != nullptr) {
     const int seen = PersonSeenAs(estimate, *request.keypoints);
     if (seen >= 0) return estimate.people[static_cast<size_t>(seen)];
-    Refuse(request.path, Concatenate(estimate.system, ": of ", people, people == 1 ? " person" : " people",
-                                     " in it nobody is where the detections have the person; are both of the same "
-                                     "video, frame for frame?"));
+    ThrowFileError(request.path,
+                   Concatenate(estimate.system, ": of ", people, people == 1 ? " person" : " people",
+                               " in it nobody is where the detections have the person; are both of the same "
+                               "video, frame for frame?"));
   }
   if (request.person >= people) {
-    Refuse(request.path, Concatenate(estimate.system, ": person ", request.person, " requested, but only ", people,
-                                     " were found (0 is the largest)"));
+    ThrowFileError(request.path, Concatenate(estimate.system, ": person ", request.person, " requested, but only ",
+                                             people, " were found (0 is the largest)"));
   }
   return estimate.people[static_cast<size_t>(request.person)];
 }
 
 /// A pixel of another image is another line of sight; sizes that follow from principal points are not exact.
 void CheckImageSize(const PersonEstimate& person, const InitialPosesRequest& request) {
-  constexpr double kMostOff = 0.02;
+  constexpr double kMaxOff = 0.02;
   const Camera &theirs = person.cameras.front(), &ours = request.camera;
-  const auto differ = [](int a, int b) { return a > 0 && b > 0 && std::abs(a - b) > kMostOff * b; };
+  const auto differ = [](int a, int b) { return a > 0 && b > 0 && std::abs(a - b) > kMaxOff * b; };
   if (differ(theirs.width, ours.width) || differ(theirs.height, ours.height)) {
-    Refuse(request.path, Concatenate("made on images of ", theirs.width, "x", theirs.height, ", expected ", ours.width,
-                                     "x", ours.height));
+    ThrowFileError(request.path, Concatenate("made on images of ", theirs.width, "x", theirs.height, ", expected ",
+                                             ours.width, "x", ours.height));
   }
 }
 
 void CheckFrames(const BodyEstimate& estimate, const PersonEstimate& person, const InitialPosesRequest& request) {
   const std::string clip = Concatenate("the ", request.num_frames, " of the detections");
   if (estimate.num_frames > 0 && estimate.num_frames != request.num_frames) {
-    Refuse(request.path, Concatenate(estimate.num_frames, " frames, expected ", clip));
+    ThrowFileError(request.path, Concatenate(estimate.num_frames, " frames, expected ", clip));
   }
   if (person.frames.back() >= request.num_frames) {
-    Refuse(request.path, Concatenate(estimate.system, ", person ", person.name, ": frame ", person.frames.back(),
-                                     " (from 0), expected none beyond ", clip));
+    ThrowFileError(request.path, Concatenate(estimate.system, ", person ", person.name, ": frame ",
+                                             person.frames.back(), " (from 0), expected none beyond ", clip));
   }
 }
 
@@ -67,7 +68,7 @@ void TakeMotion(const BodyEstimate& estimate, const PersonEstimate& person, cons
   for (int t = 0; t < request.num_frames; ++t) {
     if (!poses->motion.HasPose(t)) continue;
     ++poses->frames;
-    // What follows the body's joints there are no hands of SMPL's.
+    // In a body with more joints, those after the common ones are not SMPL's hands.
     if (body.num_joints() > kSmplJoints) poses->motion.poses.row(t).tail<kSmplHandColumns>().setZero();
   }
 }
@@ -87,7 +88,7 @@ InitialPoses ReadInitialPoses(const InitialPosesRequest& request) {
   } else {
     TakeMotion(estimate, person, request, &poses);
   }
-  if (poses.frames == 0) Refuse(request.path, estimate.system + ": no pose lies in front of the camera");
+  if (poses.frames == 0) ThrowFileError(request.path, estimate.system + ": no pose lies in front of the camera");
   poses.camera = request.camera;
   poses.system = estimate.system;
   poses.person = person.name;

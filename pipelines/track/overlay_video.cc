@@ -28,14 +28,14 @@ KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& ma
   return keypoints;
 }
 
-/// Pictures that are drawn side by side, and how many of them had no frame of the video.
+/// Images drawn in parallel, and the number of them without a frame of the video.
 struct DrawnFrames {
-  std::vector<Image> pictures;
+  std::vector<Image> images;
   int without_video = 0;
 };
 
-/// Writes one picture for each of these times; `draw(renderer, index, frame of the video or null)` runs in several
-/// threads at once, each with a renderer of its own. Pictures are read and drawn while those before them are encoded.
+/// Writes one image for each of these times; `draw(renderer, index, frame of the video or null)` runs in several
+/// threads at once, each with its own renderer. Images are read and drawn while previous ones are encoded.
 template <typename Renderer>
 OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times, TrackVideo* video,
                            const Renderer& renderer,
@@ -52,10 +52,10 @@ OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times
         backgrounds[size_t(i)] = *background;
       drawn.without_video += backgrounds[size_t(i)] ? 0 : 1;
     }
-    drawn.pictures.resize(size_t(count));
+    drawn.images.resize(size_t(count));
     ParallelFor(count, num_threads, [&](int i) {
       const std::optional<Image>& background = backgrounds[size_t(i)];
-      drawn.pictures[size_t(i)] = draw(renderers[size_t(i)], first + i, background ? &*background : nullptr);
+      drawn.images[size_t(i)] = draw(renderers[size_t(i)], first + i, background ? &*background : nullptr);
     });
     return drawn;
   };
@@ -65,8 +65,8 @@ OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times
   for (int group = 0; group < num_groups; ++group) {
     const DrawnFrames drawn = groups.Take();
     summary.frames_without_video += drawn.without_video;
-    for (const Image& picture : drawn.pictures) {
-      writer->Write(picture);
+    for (const Image& image : drawn.images) {
+      writer->Write(image);
       progress(double(++summary.frames) / num_times);
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Writes tracks as a video: projected bodies over the frames they were fitted to.
+/// Writes tracks as a video of projected bodies over the frames they were fitted to.
 #pragma once
 
 #include <functional>
@@ -33,9 +33,9 @@ struct OverlaySummary {
   std::string video_warning;  ///< VideoReader::warning() of the video below; "" when nothing was wrong
 };
 
-/// Frame t of the track goes over the video frame shown at its timestamp. Where the video has ended the backdrop stands
-/// in and is counted. Throws std::runtime_error when the video's size fits neither the camera nor a scaled copy of it,
-/// and when `path` cannot be written; nothing is left behind then.
+/// Draws frame t of the track over the video frame at its timestamp. After the end of the video a plain backdrop is
+/// used; these frames are counted. Throws std::runtime_error when the video's size matches neither the camera nor a
+/// scaled copy of it, and when `path` cannot be written; no file is left then.
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what);
 
 /// Several people in one picture (render/view/people_overlay.h).
@@ -46,11 +46,11 @@ struct PeopleOverlayVideo {
   Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
   bool side_view = false;
   Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();
-  std::optional<Floor> ground;  ///< camera frame; none: just under the lowest joint of all
+  std::optional<Floor> ground;  ///< none: just below the lowest joint
   std::function<void(double fraction)> progress = [](double) {};
 };
 
-/// One picture for every moment at which somebody was followed. Throws as WriteOverlayVideo() and PeopleOverlay.
+/// Draws one picture per moment at which somebody is tracked. Throws as WriteOverlayVideo() and PeopleOverlay.
 OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOverlayVideo& what);
 
 }  // namespace bodyloom

@@ -8,13 +8,14 @@
 #include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/base/check.h"
+#include "pipelines/detect/detect_people.h"
 #include "pipelines/files.h"
 
 namespace bodyloom {
 namespace {
 
-/// How far a focal length is from that of its lens: rounded to millimetres and focused; and of videos, of which what is
-/// left by steadying them is shown.
+/// Standard deviation of log(focal length) around the lens' value, from rounding to millimetres and focusing; in videos
+/// also from the crop of stabilisation.
 constexpr double kLensLogSigma = 0.05, kSteadiedLogSigma = 0.1;
 
 /// Camera file, focal length and image size as far as the request gives them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a request says of the scene, whoever is in it: body model, camera, and what was learned.
+/// Loads the inputs of a scene that do not depend on the person: body model, camera, and learned models.
 #pragma once
 
 #include <memory>
@@ -17,41 +17,41 @@
 
 namespace bodyloom {
 
-/// What a program holds in memory: it takes the place of the file that a request would name.
+/// Inputs given in memory, which replace the files named by a request.
 struct GivenInMemory {
   const KeypointSequence* keypoints = nullptr;  ///< of one person; borrowed
   std::shared_ptr<const BodyModel> body;        ///< null: the request's
-  std::optional<Camera> camera;                 ///< all of it is known
+  std::optional<Camera> camera;                 ///< fully known
 };
 
 struct SceneInputs {
   std::shared_ptr<const BodyModel> body;
   std::optional<PosePrior> prior;
   std::optional<LifterWeights> lifter;
-  NamedCamera camera;  ///< intrinsics, pose and the way to the video's pixels, as far as known (UseFocal)
-  std::optional<RecordedCameraPath> camera_path;  ///< of a camera that moves
+  NamedCamera camera;  ///< intrinsics, pose and map to the video's pixels, as far as known (UseFocal)
+  std::optional<RecordedCameraPath> camera_path;  ///< of a moving camera
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
-  double focal_35mm_mm = 0;         ///< of the lens, as requested or as the video notes it; 0: not known
-  double focal_35mm_log_sigma = 0;  ///< how well that tells the focal length
+  double focal_35mm_mm = 0;         ///< of the lens, from the request or the video's metadata; 0: unknown
+  double focal_35mm_log_sigma = 0;  ///< standard deviation of log(focal length)
   double video_fps = 0;
-  double stature_m = 0;  ///< of whoever is tracked; 0: the mean body's
+  double stature_m = 0;  ///< of the tracked person; 0: the mean body's
 
-  /// What the tracker is told of the scene, without the camera's path, which each person has their frames of; pointers
-  /// into this object.
+  /// The tracker's input for the scene, without the camera's path, of which each person needs different frames; holds
+  /// pointers into this object.
   [[nodiscard]] TrackSequenceInput ForTracker() const;
 };
 
-/// Every file that the request and the detector name. Throws std::runtime_error naming one that is not there or cannot
-/// be read.
+/// Files named by the request and the detector. Throws std::runtime_error naming one that is missing or unreadable.
 std::vector<std::string> RequireFiles(const SceneRequest& request, const FrameDetectorOptions& detector);
 
-/// Reads what the request names and is not given; the camera has the video's size where nothing else says.
-/// `detections`: the file of what was seen in the view, if any, which may tell the camera of a calibration folder.
-/// `needs_lifter`: otherwise the built-in one is left out. Throws std::runtime_error naming file and place.
+/// Reads the files of the request that are not replaced by `given`; the camera has the video's size if nothing else
+/// defines it. `detections`: the file of the observations in the view, if any, which may identify the camera in a
+/// calibration folder. `needs_lifter`: false skips the built-in lifter. Throws std::runtime_error naming file and
+/// place.
 SceneInputs LoadSceneInputs(const SceneRequest& request, const GivenInMemory& given = {},
                             const std::string& detections = "", bool needs_lifter = true);
 
-/// A focal length of the request's, if any, makes the camera a pinhole of its image size, which must be known by now.
+/// Makes the camera a pinhole with the request's focal length, if any, and its image size, which must be known.
 void UseFocal(const SceneRequest& request, Camera* camera);
 
 }  // namespace bodyloom

@@ -36,12 +36,12 @@ TrackSequenceResult SolveTrack(const TrackRequest& request, const TrackInputs& i
   std::string stage;
   options.progress = [&](const TrackProgress& at) {
     stage = at.stage;
-    cancelled = !callbacks.GoesOn(stage, share * at.fraction);
+    cancelled = !callbacks.ReportProgress(stage, share * at.fraction);
     return !cancelled;
   };
   TrackSequenceResult result = request.live_lag ? TrackLive(inputs.ForTracker(), LiveOptionsOf(request, options))
                                                 : FitClip(inputs.ForTracker(), options);
-  if (cancelled || (!stage.empty() && !callbacks.GoesOn(stage, share))) throw Cancelled();
+  if (cancelled || (!stage.empty() && !callbacks.ReportProgress(stage, share))) throw Cancelled();
   if (result.summary.IsUsable() && !result.track.world) result.track.world = AssumedWorld(result.track.joints);
   return result;
 }
@@ -54,7 +54,7 @@ std::vector<PlanEntry> PlanSolve(const TrackRequest& request, const TrackInputs&
 
 namespace {
 
-/// What is given in memory counts as named, under these names in messages.
+/// Names the inputs given in memory in the request, for checks and messages.
 TrackRequest NamedRequest(TrackRequest request, const GivenInMemory& given) {
   if (given.keypoints != nullptr) request.detections = "keypoints";
   if (given.camera) request.cameras = "camera";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a request asks of the tracker, once its inputs are in memory.
+/// Runs the tracker for a request whose inputs are in memory.
 #pragma once
 
 #include <vector>
@@ -13,20 +13,20 @@
 
 namespace bodyloom {
 
-/// Tracks the inputs as the request says, live or as a whole; a usable track has a world, assumed where nothing showed
-/// it (render/view/floor.h). Progress goes up to `share`. Throws Cancelled.
+/// Tracks the inputs as requested, live or as a whole clip. A usable track gets a world, assumed if it was not observed
+/// (render/view/floor.h). Progress ends at `share`. Throws Cancelled.
 TrackSequenceResult SolveTrack(const TrackRequest& request, const TrackInputs& inputs,
                                const PipelineCallbacks& callbacks = {}, double share = 1);
 
-/// What SolveTrack() would do: no computation.
+/// The plan of SolveTrack(), without running it.
 std::vector<PlanEntry> PlanSolve(const TrackRequest& request, const TrackInputs& inputs);
 
-// A clip tracked for a program that goes on with the track: as TrackClip(), without files of results.
+// Tracking for callers that need the track in memory: as TrackClip(), without writing results.
 
-/// The track that TrackClip() would write for this request, to the byte, and how it went; a clip in which nothing can
-/// be estimated has the status kFailure with a message. What `given` holds takes the place of the request's files; the
-/// request's outputs are not looked at. Throws RequestError for a request that contradicts itself, Cancelled, and
-/// std::runtime_error naming a file that cannot be used.
+/// The track that TrackClip() would write for this request, byte for byte, and its summary; a clip in which nothing can
+/// be estimated has status kFailure with a message. Data in `given` replace the request's files; the request's outputs
+/// are ignored. Throws RequestError for a contradictory request, Cancelled, and std::runtime_error naming a file that
+/// cannot be used.
 TrackSequenceResult TrackToMemory(const TrackRequest& request, const GivenInMemory& given = {},
                                   const PipelineCallbacks& callbacks = {});
 

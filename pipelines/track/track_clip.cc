@@ -18,7 +18,7 @@
 namespace bodyloom {
 namespace {
 
-/// How progress is shared out: the overlay takes about as long as the solve.
+/// Share of the solve in the progress; the overlay takes about as long.
 constexpr double kSolveShareWithOverlay = 0.5;
 
 void WriteOverlay(const TrackRequest& request, const TrackInputs& inputs, const Track& track, double start,
@@ -38,7 +38,7 @@ void WriteOverlay(const TrackRequest& request, const TrackInputs& inputs, const 
     report->solve.plan.push_back({"video under " + std::to_string(written.frames_without_video) + " overlay frames",
                                   false, "the video has no frame at their time"});
   }
-  if (!written.video_warning.empty()) callbacks.Say(written.video_warning);
+  if (!written.video_warning.empty()) callbacks.Message(written.video_warning);
   report->outputs.push_back(request.overlay);
 }
 
@@ -124,7 +124,7 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
   }
   if (report.solve.IsUsable()) {
     const std::string warning = MovingCameraWarning(report.solve.camera_path, report.solve.ground);
-    if (!warning.empty()) callbacks.Say(warning);
+    if (!warning.empty()) callbacks.Message(warning);
     clock.Begin("write");
     report.world = *result.track.world;
     if (inputs.initialiser) report.initialiser = ReportOn(*inputs.initialiser, inputs, result.track);
@@ -148,7 +148,7 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
     WriteFileAtomically(request.json, ToJson(report));
   }
   if (!report.solve.IsUsable()) {
-    throw NothingToTrack(report.detections + ": nothing could be tracked: " + report.solve.message);
+    throw NoPersonFound(report.detections + ": nothing could be tracked: " + report.solve.message);
   }
   return report;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The tracker's inputs from file names: everything that a request names, checked against each other.
+/// Loads the tracker's inputs from the files that a request names, and checks them against each other.
 #pragma once
 
 #include <optional>
@@ -21,16 +21,16 @@ struct TrackInputs : SceneInputs {
   std::optional<KeypointSequence> keypoints;
   std::optional<DenseSequence> dense;
   std::optional<PartLabelSequence> part_labels;
-  bool joints_from_labels = false;            ///< `keypoints` were read off `part_labels`
-  std::vector<CameraPose> camera_from_scene;  ///< of every frame, or empty: the camera stands still
+  bool joints_from_labels = false;            ///< `keypoints` were derived from `part_labels`
+  std::vector<CameraPose> camera_from_scene;  ///< of every frame, or empty: static camera
   CameraPathReport camera_path_report;
   double camera_scale_m = 1;
   std::optional<InitialPoses> initialiser;
   std::vector<LiftedFrame>
-      lifted;  ///< the lifter's landmarks with the initialiser's in their place, when it gives such
+      lifted;  ///< the lifter's landmarks, replaced by those of the initialiser in frames where it gives some
   std::optional<Track> reference;
 
-  /// Keypoints are always there when only part labels were given: those read off the labels.
+  /// With only part labels given, keypoints are those derived from the labels.
   [[nodiscard]] int num_frames() const { return keypoints ? keypoints->num_frames() : dense->num_frames(); }
   [[nodiscard]] const std::vector<double>& timestamps() const {
     return keypoints ? keypoints->timestamps : dense->timestamps;
@@ -39,12 +39,12 @@ struct TrackInputs : SceneInputs {
   [[nodiscard]] TrackSequenceInput ForTracker() const;
 };
 
-/// Every file that the request names. Throws std::runtime_error naming one that is not there or cannot be read.
+/// Files named by the request. Throws std::runtime_error naming one that is missing or unreadable.
 std::vector<std::string> RequireTrackInputs(const TrackRequest& request);
 
-/// Reads what the request names and is not given (request.detections then names the keypoints in messages), and detects
-/// people when there is nothing but a video. Throws Cancelled, and std::runtime_error naming file and place, also when
-/// two files contradict each other (image sizes, number of frames).
+/// Reads the files of the request that are not replaced by `given` (request.detections then names the keypoints in
+/// messages), and detects people if only a video is given. Throws Cancelled, and std::runtime_error naming file and
+/// place, also for files that contradict each other (image sizes, number of frames).
 TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks = {},
                             const GivenInMemory& given = {});
 

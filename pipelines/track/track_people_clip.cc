@@ -66,7 +66,7 @@ void CheckClipRequest(const TrackPeopleClipRequest& request, const GivenInMemory
   CheckFiles(request);
 }
 
-void WriteMasks(const TrackPeopleClipRequest& request, const PeopleInClip& people, const PipelineCallbacks& callbacks,
+void WriteMasks(const TrackPeopleClipRequest& request, const ChosenPeople& people, const PipelineCallbacks& callbacks,
                 TrackPeopleReport* report) {
   DetectedClip clip = people.clip;
   report->masks_cut =
@@ -84,7 +84,7 @@ SceneInputs SceneOf(const TrackPeopleRequest& request, const GivenInMemory& give
   return scene;
 }
 
-void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scene, const TrackedInClip& tracked,
+void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scene, const TrackedScene& tracked,
                   const PipelineCallbacks& callbacks, TrackPeopleReport* report) {
   PeopleOverlayVideo overlay;
   for (size_t i = 0; i < tracked.seen.size(); ++i) {
@@ -149,7 +149,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   clock.Begin("read");
   const SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
-  const PeopleInClip people = FindPeopleInClip(request, callbacks);
+  const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
   TrackPeopleReport report = ReportOf(request, people);
   clock.Begin("write");
   report.outputs.push_back(FileIn(request, "detections.npz"));
@@ -159,7 +159,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
     WriteMasks(request, people, callbacks, &report);
   }
   clock.Begin("track");
-  const TrackedInClip tracked = TrackPeopleInClip(request, scene, people, callbacks, &report);
+  const TrackedScene tracked = TrackDetectedPeople(request, scene, people, callbacks, &report);
   clock.Begin("write");
   for (size_t i = 0; i < report.people.size(); ++i) {
     TrackedPerson& person = report.people[i];
@@ -179,7 +179,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   EndReport(&clock, &report);
   report.outputs.push_back(FileIn(request, "summary.json"));
   WriteFileAtomically(report.outputs.back(), ToJson(report));
-  RequireSomebodyTracked(request, tracked);
+  RequireAnyTrack(request, tracked);
   return report;
 }
 
@@ -191,12 +191,12 @@ TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& request, const Pipel
   clock.Begin("read");
   const SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
-  const PeopleInClip people = FindPeopleInClip(request, callbacks);
+  const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
   TrackedPeople found;
   found.report = ReportOf(request, people);
   clock.Begin("track");
-  TrackedInClip tracked = TrackPeopleInClip(request, scene, people, callbacks, &found.report);
-  RequireSomebodyTracked(request, tracked);
+  TrackedScene tracked = TrackDetectedPeople(request, scene, people, callbacks, &found.report);
+  RequireAnyTrack(request, tracked);
   EndReport(&clock, &found.report);
   found.people = std::move(tracked.result.people);
   return found;

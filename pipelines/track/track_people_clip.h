@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A raw video to everybody in it: people are detected, linked over the clip, and tracked as one scene; in files or in
-/// memory.
+/// Tracks everybody in a raw video: people are detected, linked over the clip, and tracked as one scene; results in
+/// files or in memory.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "geometry/base/callbacks.h"
-#include "pipelines/track/people_in_clip.h"
+#include "pipelines/track/chosen_people.h"
 #include "pipelines/track/scene_inputs.h"
 #include "pipelines/track/track_people_report.h"
 #include "tracking/problem/track_summary.h"
@@ -15,13 +15,13 @@
 namespace bodyloom {
 
 struct TrackPeopleClipRequest : TrackPeopleRequest {
-  std::string out;  ///< folder, made when it is not there
+  std::string out;  ///< folder, created if missing
   bool overlay = true;
-  bool side_view = false;  ///< the overlay also shows everybody from their side
-  bool report = false;     ///< the clip's page
-  bool masks = false;      ///< each person's mask is written too
-  /// Masks are written as the network gives them, not cut anew from what stands behind the people (CutMasks()). Tracks
-  /// are the same in any case: for them the network's masks do as well.
+  bool side_view = false;  ///< the overlay also shows a side view
+  bool report = false;     ///< write the clip's page
+  bool masks = false;      ///< write each person's mask
+  /// Write the network's masks without refinement against the background (CutMasks()). Tracks do not depend on it; they
+  /// always use the network's masks.
   bool coarse_masks = false;
 };
 
@@ -34,18 +34,18 @@ struct TrackPeopleClipRequest : TrackPeopleRequest {
 ///   overlay.mp4      all of them over the video (render/view/people_overlay.h)
 ///   report.html      with `report`: the page of the clip (pipelines/page/write_clip_page.h)
 ///   summary.json     ToJson(TrackPeopleReport)
-/// Files of these names are replaced; tracks of people whom this run does not find stay. Throws RequestError for a
-/// request that contradicts itself, Cancelled, and std::runtime_error naming a file that cannot be used, or saying that
-/// nobody was found or could be tracked. `given` takes the place of the request's body and camera.
+/// Files of these names are replaced; tracks of people not found in this run are kept. Throws RequestError for a
+/// contradictory request, Cancelled, and std::runtime_error naming a file that cannot be used, or when nobody was found
+/// or could be tracked. `given` replaces the request's body and camera.
 TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const PipelineCallbacks& callbacks = {},
                                   const GivenInMemory& given = {});
 
 struct TrackedPeople {
-  std::vector<TrackSequenceResult> people;  ///< in the order of report.people; some may have status kFailure
-  TrackPeopleReport report;                 ///< names no files
+  std::vector<TrackSequenceResult> people;  ///< in the order of report.people; status may be kFailure
+  TrackPeopleReport report;                 ///< without file names
 };
 
-/// The tracks that TrackPeopleClip() would write, to the byte, without any file. Throws as it does.
+/// The tracks that TrackPeopleClip() would write, byte for byte, without writing files. Throws as it does.
 TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks = {},
                                   const GivenInMemory& given = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The report of a video in which everybody was tracked: as text for a reader, and as JSON for a program.
+/// Report of a video in which everybody was tracked: as text for a reader, and as JSON for a program.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,9 @@ struct TrackedPerson {
   int number = 0;  ///< in LinkPeople()'s order
   FoundPerson seen;
   TrackSequenceSummary solve;
-  HiddenCounts hidden;        ///< by other people
-  bool fitted_again = false;  ///< with what all fits say of the scene
-  std::string track;          ///< file; empty when it could not be tracked (solve.message)
+  HiddenCounts hidden;        ///< occlusions by other people
+  bool fitted_again = false;  ///< with the scene shared by all fits
+  std::string track;          ///< file; empty if not tracked (solve.message)
 };
 
 struct TrackPeopleReport {
@@ -31,19 +31,19 @@ struct TrackPeopleReport {
   double fps = 0;
   std::string network;            ///< FrameDetectorName()
   std::optional<bool> masks_cut;  ///< of masks that were written: CutMasks()
-  int num_found = 0;              ///< people in the detections, also those who were left out
+  int num_found = 0;              ///< people in the detections, including those left out
   std::vector<TrackedPerson> people;
   SharedScene scene;
   WorldFrame world;  ///< of all tracks
   CameraPathReport camera_path;
-  CameraPathSummary camera_scale;  ///< of the path, one for all tracks
+  CameraPathSummary camera_scale;  ///< scale of the path, common to all tracks
   StageSeconds seconds;
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;
   std::vector<std::string> outputs;  ///< files written
 };
 
-/// Who was followed, the scene, time by stage, files: some lines, the last one with a newline.
+/// The people tracked, the scene, time by stage and files; several lines ending in a newline.
 std::string ToText(const TrackPeopleReport& report);
 
 /// The same as one JSON object; the keys are listed in docs/command.md. Numbers that are not finite become null.

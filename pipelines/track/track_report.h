@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The report of a tracked clip: as text for a reader, and as JSON for a program.
+/// Report of a tracked clip: as text for a reader, and as JSON for a program.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,12 @@
 
 namespace bodyloom {
 
-/// Poses of another system that the fit began with.
+/// Initial poses of another system used by the fit.
 struct InitialiserReport {
   std::string system, person;    ///< as the file calls them
-  int people = 0, frames = 0;    ///< in the file; of the clip that have a pose
-  bool has_shape = false;        ///< its shape is one of the body that is fitted
-  bool gives_landmarks = false;  ///< points of another body, no rotations
+  int people = 0, frames = 0;    ///< people in the file; frames of the clip with a pose
+  bool has_shape = false;        ///< it has the shape of the fitted body
+  bool gives_landmarks = false;  ///< it has landmarks of another body, no rotations
   InitialiserGain gain;
 };
 
@@ -40,20 +40,20 @@ struct TrackReport {
 
 constexpr const char* kSolveStage = "solve";
 
-/// The job's stages with the solve replaced by the solver's own stages and what they leave unexplained.
+/// The job's stages, with the solve replaced by the solver's own stages and the remaining time.
 StageSeconds StagesOf(const TrackReport& report);
 
-/// Frames by status, error, time by stage, what was skipped and why: about fifteen lines, the last one with a newline.
+/// Frames by status, error, time by stage, skipped steps with reasons: about fifteen lines ending in a newline.
 std::string ToText(const TrackReport& report);
 
 /// The same as one JSON object; the keys are listed in docs/command.md. Numbers that are not finite become null.
 std::string ToJson(const TrackReport& report);
 
-/// A plan as lines "run   what: why" / "skip  what: why".
+/// The plan as lines "run   what: why" / "skip  what: why".
 std::string ToText(const std::vector<PlanEntry>& plan);
 
-/// What follows a focal length: ", estimated within 20.0 % (standard deviation)"; empty when it was known or its spread
-/// is not.
+/// Text that follows a focal length: ", estimated within 20.0 % (standard deviation)"; empty if the focal length was
+/// given or its standard deviation is unknown.
 std::string FocalSigmaText(double focal_log_sigma);
 
 }  // namespace bodyloom

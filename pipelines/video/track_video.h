@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The video that a track was made from, frame by frame of the track, and the track moved into its pixels.
+/// Reads the video of a track at the track's frames, and transforms the track to the video's pixels.
 #pragma once
 
 #include <string>
@@ -11,26 +11,27 @@
 
 namespace bodyloom {
 
-/// Throws std::runtime_error when the video's size fits neither the camera nor a scaled copy of it.
+/// Video of a track. Throws std::runtime_error when the video's size matches neither the camera nor a scaled copy of
+/// it.
 class TrackVideo {
  public:
-  /// `map`: from the camera's pixels to the video's, when it says more than identity. video_offset: the video frame of
+  /// `map`: from the camera's pixels to the video's, used if it is not the identity. video_offset: the video frame of
   /// the track's time zero.
   TrackVideo(const std::string& path, const Track& track, const Matrix2x3d& map = NamedCamera().video_px_from_camera_px,
              int video_offset = 0);
 
   [[nodiscard]] const VideoInfo& info() const { return reader_.info(); }
-  /// What was wrong with the video so far (VideoReader::warning); "" when nothing was.
+  /// Warning about the video so far (VideoReader::warning); "" without one.
   [[nodiscard]] std::string warning() const { return reader_.warning(); }
   /// From pixels of the track's camera to those of the video.
   [[nodiscard]] const Matrix2x3d& map() const { return map_; }
-  /// The track as a camera with the video's pixels would have seen it.
+  /// The track as seen by a camera with the video's pixels.
   [[nodiscard]] Track Moved(Track track) const;
 
-  /// The video frame shown at a time of the track, seconds; null before its beginning and past its end. Times must not
-  /// fall by more than a frame.
+  /// The video frame at a time of the track, seconds; null before the start and after the end of the video. Successive
+  /// times must not decrease by more than a frame.
   const Image* At(double time_s);
-  /// How many frames the video has after the one shown at that time; 0 when it does not say how long it is.
+  /// Number of frames of the video after the one at that time; 0 if its length is unknown.
   [[nodiscard]] int FramesAfter(double time_s) const;
 
  private:
@@ -45,13 +46,12 @@ class TrackVideo {
   bool has_frame_ = false;
 };
 
-/// From pixels of a camera to those of a video of width × height: `map` where it is more than identity, else the scale
-/// between the two. Throws std::runtime_error naming `path` when the video is no scaled copy of what the camera saw.
+/// Map from pixels of a camera to those of a video of width × height: `map` if it is not the identity, else the scale
+/// between the two. Throws std::runtime_error naming `path` when the video is not a scaled copy of the camera's image.
 Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, int width, int height,
                                  const std::string& path);
 
-/// Frames a second of a video whose frames have these timestamps: 1 / their median step, within [1, 240]; 30 for one
-/// frame.
+/// Frame rate of a video from its timestamps: 1 / median step, clamped to [1, 240]; 30 for one frame.
 double VideoFrameRate(const std::vector<double>& timestamps);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodyloom: people followed through a single-camera video with a parametric body. docs/python.md is the manual.
+"""Bodyloom tracks people in a single-camera video with a parametric body. docs/python.md is the manual.
 
     import bodyloom
     track = bodyloom.track("openpose_json/", image_size=(1920, 1080))

@@ -41,7 +41,7 @@ _Path = str | os.PathLike[str]
 _Progress = Callable[[str, float], bool | None]
 _Doubles = NDArray[np.float64]
 _Floats = NDArray[np.float32]
-_Pictures = NDArray[np.uint8]
+_Images = NDArray[np.uint8]
 _Status = Literal["tracked", "weak", "interpolated", "lost"]
 _Velocity = Literal["savgol", "central", "backward", "analytic"]
 _Axes = Literal["camera", "world", "body"]
@@ -333,12 +333,12 @@ class Renderer:
         *,
         body: Body | _Path | None = None,
         view_yaw_deg: float | None = None,
-        texture: _Pictures | _Path | None = None,
+        texture: _Images | _Path | None = None,
         truth: Track | _Path | None = None,
         error_maximum: float | None = None,
         threads: int = 0,
     ) -> None: ...
-    def picture(self, frame: int, *, background: _Pictures | None = None, turn_deg: float = 0.0) -> _Pictures: ...
+    def image(self, frame: int, *, background: _Images | None = None, turn_deg: float = 0.0) -> _Images: ...
     @property
     def width(self) -> int: ...
     @property
@@ -369,9 +369,9 @@ class Person:
     @property
     def body(self) -> Body: ...
     @property
-    def texture(self) -> _Pictures: ...
+    def texture(self) -> _Images: ...
     @property
-    def labels(self) -> _Pictures: ...
+    def labels(self) -> _Images: ...
     @property
     def light(self) -> _Doubles: ...
     @property
@@ -380,7 +380,7 @@ class Person:
     def shares(self) -> dict[str, float]: ...
 
 class ShownAvatar:
-    def picture(self, frame: int) -> _Pictures: ...
+    def image(self, frame: int) -> _Images: ...
     @property
     def width(self) -> int: ...
     @property
@@ -510,7 +510,7 @@ def run(
     out: _Path | None = None,
     people: int = 0,
     person: int | None = None,
-    least_seconds: float = 0.5,
+    min_seconds: float = 0.5,
     fps: float | None = None,
     min_confidence: float = 0.0,
     view: str = "",
@@ -565,7 +565,7 @@ def parse_photo(
     stature_m: float | None = None,
     models: _Path | None = None,
     progress: _Progress | None = None,
-) -> _Pictures: ...
+) -> _Images: ...
 
 def synthetic_clip(
     frames: int = 180,
@@ -624,12 +624,12 @@ def render(
     video: _Path | None = None,
     view_yaw_deg: float | None = None,
     turntable: bool = False,
-    texture: _Pictures | _Path | None = None,
+    texture: _Images | _Path | None = None,
     truth: Track | _Path | None = None,
     error_maximum: float | None = None,
     threads: int = 0,
     progress: _Progress | None = None,
-) -> _Pictures: ...
+) -> _Images: ...
 @overload
 def render(
     track: Track | _Path,

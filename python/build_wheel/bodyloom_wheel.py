@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the wheel of the Python package with CMake: a build backend after PEP 517 that needs nothing but Python.
+"""Builds the wheel of the Python package with CMake: a PEP 517 build backend that needs nothing but Python.
 
 A backend of our own because Debian 12 has no scikit-build-core, and because setuptools would have to be bent around
 CMake in more lines than these.
@@ -28,7 +28,7 @@ def version():
 
 
 def project():
-    """The keys of [project] that this wheel's metadata repeats; read plainly, as Python has tomllib only from 3.11 on."""
+    """Keys of [project] in this wheel's metadata; parsed by hand, as Python has tomllib only from 3.11 on."""
     table = (ROOT / "pyproject.toml").read_text(encoding="utf-8").split("[project]")[1].split("\n[")[0]
     return dict(re.findall(r'^([\w-]+) = "(.*)"$', table, re.M)), re.findall(r'"([^"]+ :: [^"]+)"', table)
 
@@ -53,7 +53,7 @@ def run(*words):
 
 
 def build(build_dir, stage, arguments):
-    """The package's files below `stage`."""
+    """Files of the package below `stage`."""
     cache = build_dir / "CMakeCache.txt"
     if not cache.exists():
         generator = ["-G", "Ninja"] if sysconfig.os.name == "posix" and has_program("ninja") else []
@@ -107,7 +107,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """The tree as git knows it."""
+    """Builds the source distribution from the files that git tracks."""
     name = f"{NAME}-{version()}"
     subprocess.run(["git", "-C", str(ROOT), "archive", "--format=tar.gz", f"--prefix={name}/", "-o",
                     str(pathlib.Path(sdist_directory, name + ".tar.gz").resolve()), "HEAD"], check=True)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Frames pushed one by one from Python, as a camera and a detector would bring them; prints the rate that was kept.
+"""Tracks live from Python: frames are pushed one by one, as from a camera and a detector. Prints the frame rate.
 
     live.py [FRAMES]
 """

@@ -33,7 +33,7 @@ mpjpe_m = np.linalg.norm(estimate - true, axis=2).mean(axis=1)
 
 
 def after_similarity(points: NDArray[np.float64], target: NDArray[np.float64]) -> NDArray[np.float64]:
-    """`points` moved onto `target` by rotation, scale and translation, least squares."""
+    """Aligns `points` to `target` by rotation, scale and translation in the least-squares sense."""
     a, b = points - points.mean(axis=0), target - target.mean(axis=0)
     u, s, vt = np.linalg.svd(a.T @ b)
     sign = np.diag([1, 1, np.sign(np.linalg.det(u @ vt))])

@@ -24,24 +24,24 @@
 namespace bodyloom {
 namespace {
 
-constexpr int kMostPieces = 5, kPieceFrames = 40;
-constexpr int kFramesForPiece = 20;  ///< a clip has a piece for so many frames
+constexpr int kMaxPieces = 5, kPieceFrames = 40;
+constexpr int kFramesForPiece = 20;  ///< frames of the clip per piece
 constexpr int kMasksAPiece = 5, kAskedAPiece = 2;
-constexpr double kSearchSpacing_m = 0.04;  ///< of the garment's vertices, which is later cut finer
-constexpr double kLeastShare = 1.0 / 3;    ///< of the frames asked for themselves: as coats are found in half of theirs
+constexpr double kSearchSpacing_m = 0.04;  ///< of the garment's vertices during the search; the result is cut finer
+constexpr double kMinShare = 1.0 / 3;      ///< of the frames fitted independently; coats are found in half of theirs
 constexpr int kHalvings = 2;
 constexpr double kLengthStep_m = 0.04, kFullnessStep = 0.08, kWaistStep_m = 0.04;
 constexpr double kShortest_m = 0.25, kFullest = 0.9;
 constexpr int kJointsOfSmpl = 24;
 
-/// Some frames on end, at a few of which the masks are looked at.
+/// Consecutive frames, at a few of which masks are compared.
 struct Piece {
   Track track;
-  std::vector<int> looked_at;  ///< of the piece's frames, rising
+  std::vector<int> looked_at;  ///< frames of the piece with masks, ascending
   std::vector<PersonSilhouette> silhouettes;
 };
 
-/// Waist (from the waist of the beginning), length, fullness, in steps, so that what was tried is known again.
+/// Waist (relative to the initial one), length and fullness in steps: integers, so that tried measures are recognised.
 using Measures = std::array<int, 3>;
 
 class ClipClothesFit {
@@ -54,7 +54,7 @@ class ClipClothesFit {
     std::copy_if(frames.begin(), frames.end(), std::back_inserter(usable), [&](int t) { return track_.HasResult(t); });
     if (usable.empty() || body_.num_joints() < kJointsOfSmpl) return {};
     std::vector<FittedClothes> asked;
-    const int count = std::clamp(static_cast<int>(usable.size()) / kFramesForPiece, 1, kMostPieces);
+    const int count = std::clamp(static_cast<int>(usable.size()) / kFramesForPiece, 1, kMaxPieces);
     for (int k = 0; k < count && MayBeEnough(asked, count); ++k) {
       const size_t end = (k + 1) * usable.size() / count;
       AddPiece(usable, static_cast<int>(end) - 1, mask_of, &asked);
@@ -63,8 +63,8 @@ class ClipClothesFit {
     clothes.frames = static_cast<int>(asked.size());
     if (!Begin(asked, &clothes)) return clothes;
     Search();
-    if (std::isfinite(Unlike(best_))) clothes.unlike_loose = Unlike(best_);
-    if (clothes.unlike_close - clothes.unlike_loose >= options_.least_gain) {
+    if (std::isfinite(MaskError(best_))) clothes.mask_error_with_garment = MaskError(best_);
+    if (clothes.mask_error_tight - clothes.mask_error_with_garment >= options_.min_gain) {
       clothes.garment = Cut(best_);
       clothes.offsets_m = offsets_;
     }
@@ -77,13 +77,13 @@ class ClipClothesFit {
                                           [](const FittedClothes& fitted) { return fitted.garment.length_m > 0; }));
   }
 
-  /// Whether the frames of so many pieces can still make a garment of it.
+  /// True if the frames of so many pieces suffice for a garment.
   static bool MayBeEnough(const std::vector<FittedClothes>& asked, int pieces) {
     const int all = pieces * kAskedAPiece, without = static_cast<int>(asked.size()) - FoundIn(asked);
-    return all - without >= kLeastShare * all;
+    return all - without >= kMinShare * all;
   }
 
-  /// The piece that ends with usable[last], and what its last masks say by themselves.
+  /// Adds the piece that ends with usable[last] and fits its last masks independently.
   void AddPiece(const std::vector<int>& usable, int last, const MaskOfFrame& mask_of,
                 std::vector<FittedClothes>* asked) {
     const int end = usable[last], begin = std::max(0, end - kPieceFrames + 1);
@@ -111,13 +111,13 @@ class ClipClothesFit {
     if (!piece.looked_at.empty()) pieces_.push_back(std::move(piece));
   }
 
-  /// Whether there is a garment to search for.
+  /// Initialises the search. False if too few frames show a garment.
   bool Begin(const std::vector<FittedClothes>& asked, ClipClothes* clothes) {
     std::vector<const FittedClothes*> found;
     std::vector<double> waists;
     double hem = 0, fullness = 0;
     for (const FittedClothes& fitted : asked) {
-      clothes->unlike_close += fitted.unlike_close / static_cast<double>(asked.size());
+      clothes->mask_error_tight += fitted.mask_error_tight / static_cast<double>(asked.size());
       if (fitted.garment.length_m <= 0) continue;
       found.push_back(&fitted);
       waists.push_back(fitted.garment.waist_y_m);
@@ -125,10 +125,10 @@ class ClipClothesFit {
       fullness += fitted.garment.fullness;
     }
     clothes->found_in = FoundIn(asked);
-    clothes->unlike_loose = clothes->unlike_close;
-    if (found.empty() || clothes->found_in < kLeastShare * clothes->frames) return false;
-    // A silhouette hardly shows where cloth begins that lies on the body. Too high does little harm, there it goes with
-    // the body; too low lets swing what is held.
+    clothes->mask_error_with_garment = clothes->mask_error_tight;
+    if (found.empty() || clothes->found_in < kMinShare * clothes->frames) return false;
+    // A silhouette hardly shows where cloth on the body begins. Too high does little harm, as the cloth there follows
+    // the body; too low lets held cloth swing.
     constexpr double kWaistPercentile = 75;
     const auto count = static_cast<double>(found.size());
     begun_ = found.front()->garment;
@@ -147,7 +147,7 @@ class ClipClothesFit {
     return true;
   }
 
-  /// The hem stays where the waist is moved.
+  /// Garment of these measures; the hem stays in place when the waist moves.
   [[nodiscard]] LooseGarmentOptions Cut(const Measures& steps) const {
     constexpr double kFinest = 1 << (kHalvings - 1);
     LooseGarmentOptions cut = begun_;
@@ -168,18 +168,18 @@ class ClipClothesFit {
     }
   }
 
-  /// Whether it is better there, and if so goes there.
+  /// Changes a measure by `by` if that lowers E. Returns true if it did.
   bool Improves(int measure, int by) {
     Measures there = best_;
     there[measure] += by;
     const LooseGarmentOptions cut = Cut(there);
     if (cut.length_m < kShortest_m || cut.fullness < 0 || cut.fullness > kFullest) return false;
-    if (!(Unlike(there) < Unlike(best_))) return false;
+    if (!(MaskError(there) < MaskError(best_))) return false;
     best_ = there;
     return true;
   }
 
-  double Unlike(const Measures& steps) {
+  double MaskError(const Measures& steps) {
     const auto known = unlike_.find(steps);
     if (known != unlike_.end()) return known->second;
     callbacks_.Update("fitting the garment", 0);
@@ -189,7 +189,7 @@ class ClipClothesFit {
     LooseGarment garment;
     try {
       garment = CutGarment(*clothed_, &cut);
-    } catch (const std::invalid_argument&) {  // no body at that height
+    } catch (const std::invalid_argument&) {  // the waist is off the body
       return unlike_[steps] = std::numeric_limits<double>::infinity();
     }
     ParallelFor(static_cast<int>(pieces_.size()), num_threads_,
@@ -199,7 +199,7 @@ class ClipClothesFit {
     return unlike_[steps] = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(looked_at);
   }
 
-  /// Sum of E over the frames looked at.
+  /// Sum of E over the frames compared.
   [[nodiscard]] double UnlikeIn(const Piece& piece, const LooseGarment& garment) const {
     PersonCloth cloth(*clothed_, garment, piece.track);
     VisibilityBuffer body;

@@ -17,17 +17,17 @@ namespace bodyloom {
 namespace {
 
 constexpr double kStepPx = 0.5;
-constexpr double kOntoContourPx = 3;  ///< a vertex of the contour has left the body after so many pixels
+constexpr double kOntoContourPx = 3;  ///< a contour vertex' normal leaves the body within so many pixels
 constexpr double kProbeM = 0.001;
 
-/// The surface of one picture, as a walk along a vertex' normal sees it.
+/// Searches body and mask of one image along vertex normals.
 class RimWalk {
  public:
   RimWalk(const Camera& camera, const LabelImage& mask, const VisibilityBuffer& buffer,
           const ClothesOffsetOptions& options)
       : camera_(camera), mask_(mask), buffer_(buffer), options_(options) {}
 
-  /// Metres from where the body ends to where the person does, along the vertex' normal.
+  /// Distance from the edge of the body to that of the person along the vertex' normal, metres.
   [[nodiscard]] std::optional<double> Measure(const Eigen::Vector3d& vertex, const Eigen::Vector3d& normal) const {
     const bool orthographic = camera_.model == CameraModel::kWeakPerspective;
     const Eigen::Vector3d sight = orthographic ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : vertex.normalized();
@@ -38,17 +38,17 @@ class RimWalk {
     if (!(px_per_m > 0)) return std::nullopt;
     const Eigen::Vector2d out = (beside - at).normalized();
 
-    double left = 0;  // where the body ends
+    double left = 0;  // edge of the body
     while (IsBody(at + left * out)) {
       left += kStepPx;
       if (left > kOntoContourPx) return std::nullopt;
     }
     const Eigen::Vector2d outside = at + left * out;
-    if (!IsInPicture(outside)) return std::nullopt;
+    if (!IsInImage(outside)) return std::nullopt;
     if (IsPerson(outside)) {
       for (double along = left; along - left <= options_.furthest_m * px_per_m; along += kStepPx) {
         const Eigen::Vector2d p = at + along * out;
-        if (!IsInPicture(p) || (along > left + kOntoContourPx && IsBody(p))) return std::nullopt;
+        if (!IsInImage(p) || (along > left + kOntoContourPx && IsBody(p))) return std::nullopt;
         if (!IsPerson(p)) return (along - left) / px_per_m;
       }
       return std::nullopt;
@@ -60,7 +60,7 @@ class RimWalk {
   }
 
  private:
-  [[nodiscard]] bool IsInPicture(const Eigen::Vector2d& p) const {
+  [[nodiscard]] bool IsInImage(const Eigen::Vector2d& p) const {
     return p.x() >= 0 && p.y() >= 0 && p.x() <= camera_.width - 1 && p.y() <= camera_.height - 1;
   }
   [[nodiscard]] bool IsBody(const Eigen::Vector2d& p) const {

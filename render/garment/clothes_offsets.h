@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far clothes and hair stand off a bare body, from the mask of one picture.
+/// Offsets of clothes and hair from the bare body, from the mask of one image.
 ///
-/// Measured at the rim: a vertex whose normal is nearly square to the line of sight and that lies on the contour of the
-/// body. The picture is walked along the projected normal from where the body ends to where the person does: outward
-/// over pixels of the person, inward where the body reaches beyond the person. A walk that comes upon the body again
-/// (an arm before the trunk), or upon the picture's border, or ends nowhere within reach, measures nothing.
+/// Measured at the rim: vertices on the body's contour with normals nearly perpendicular to the line of sight. The mask
+/// is searched along the projected normal from the edge of the body to the edge of the person: outward over pixels of
+/// the person, or inward where the body reaches beyond the person. A search that meets the body again (an arm before
+/// the trunk), meets the image's border, or finds no edge within reach gives no measurement.
 ///
-/// Spread over the surface as the offsets o that minimise
+/// Interpolated over the surface as the offsets o that minimise
 ///   Σ_measured (o_i − m_i)² + s Σ_edges (o_i − o_j)² + Σ_i d_i o_i²
-/// with d = `anchor` on the face and hands, whose shape is their own, and on what a loose garment covers, and `decay`
-/// elsewhere, so that what nothing was measured near stays bare.
+/// with d = `anchor` on the face and hands, which stay bare, and where a loose garment covers the body, and `decay`
+/// elsewhere, so that parts far from any measurement stay bare.
 #pragma once
 
 #include <cstdint>
@@ -24,20 +24,20 @@
 namespace bodyloom {
 
 struct ClothesOffsetOptions {
-  double furthest_m = 0.18;  ///< nothing stands off further; a longer walk is something else that the person touches
-  double deepest_m = 0.03;   ///< the body is never drawn in by more
-  double rim_cosine = 0.35;  ///< of the normal and the line of sight
+  double furthest_m = 0.18;  ///< maximum offset; a longer search met something else that the person touches
+  double deepest_m = 0.03;   ///< maximum inward offset
+  double rim_cosine = 0.35;  ///< maximum cosine between normal and line of sight
   double smoothness = 2;     ///< s
   double decay = 0.002, anchor = 20;
 };
 
 struct ClothesOffsets {
-  std::vector<double> metres;  ///< one a vertex, along its normal, −deepest_m to furthest_m
-  int measured = 0;            ///< vertices of the rim with a measurement
+  std::vector<double> metres;  ///< one per vertex, along its normal, −deepest_m to furthest_m
+  int measured = 0;            ///< rim vertices with a measurement
 };
 
-/// `vertices_in_camera`: the bare body in the picture's pose. `rest_vertices`: at rest, to know the face. `covered`,
-/// one a vertex: 1 where a loose garment hides the body, which stays bare there; empty: nowhere. Throws
+/// `vertices_in_camera`: the bare body in the image's pose. `rest_vertices`: at rest, to locate the face. `covered`,
+/// one per vertex: 1 where a loose garment hides the body, which stays bare there; empty: nowhere. Throws
 /// std::invalid_argument when the camera has no image size or sizes do not fit.
 ClothesOffsets FitClothesOffsets(const BodyModel& body, const MatrixX3d& rest_vertices,
                                  const MatrixX3d& vertices_in_camera, const Camera& camera, const LabelImage& mask,

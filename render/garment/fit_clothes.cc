@@ -48,15 +48,15 @@ class ClothesFit {
     if (!options_.loose || body_.num_joints() < kSmplJoints || silhouette_.area() == 0) return close;
     FittedClothes closest = close;
     for (double& offset : closest.offsets.metres) offset = std::min(offset, options_.close_m);
-    close.unlike_close = close.unlike_loose = Unlike(closest);
+    close.mask_error_tight = close.mask_error_with_garment = MaskError(closest);
     FittedClothes loose = close;
     const Candidate best = BestGarment();
     if (best.cut.length_m <= 0) return close;
     loose.garment = best.cut;
     loose.swing_rad = best.swing_rad;
     loose.offsets = FitOffsets(CoveredByGarment(body_, rest_, loose.garment));
-    close.unlike_loose = loose.unlike_loose = Unlike(loose);
-    return close.unlike_close - loose.unlike_loose >= options_.least_gain ? loose : close;
+    close.mask_error_with_garment = loose.mask_error_with_garment = MaskError(loose);
+    return close.mask_error_tight - loose.mask_error_with_garment >= options_.min_gain ? loose : close;
   }
 
  private:
@@ -64,21 +64,20 @@ class ClothesFit {
     return FitClothesOffsets(body_, rest_, vertices_, photo_.CameraAt(0), mask_, options_.offsets, covered);
   }
 
-  /// A garment, and how many pixels of the person beside the bare body it covers more than of nobody.
+  /// A garment, and the person's pixels beside the bare body that it covers minus the background pixels.
   struct Candidate {
     LooseGarmentOptions cut;
     double swing_rad = 0;
     int pixels = 0;
   };
 
-  /// The garment that covers most of the person beside the bare body; length 0: none covers any. What hangs down to the
-  /// ankles falls closer than what ends at the knee, so the best of those that were tried at full length are cut and
-  /// let down again.
+  /// The garment that covers most of the person beside the bare body; length 0: none covers any. Cloth that reaches the
+  /// ankles hangs closer than cloth that ends at the knee, so the best of full length are cut and simulated again.
   Candidate BestGarment() const {
     const MatrixX3d joints = body_.RestJoints(betas_);
     const double pelvis = joints(0, 1), spine1 = joints(3, 1), spine2 = joints(6, 1);
     const double ankle = 0.5 * (joints(7, 1) + joints(8, 1));
-    const ClothWearer wearer(body_, betas_, {});
+    const ClothCollisionBody wearer(body_, betas_, {});
     VisibilityBuffer bare;
     bare.Render(vertices_, body_.data().faces, silhouette_.camera());
     std::vector<Candidate> candidates;
@@ -96,9 +95,9 @@ class ClothesFit {
     TryOn(wearer, bare, &candidates);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.pixels > b.pixels; });
-    // Where nothing beside the bare body looks like cloth, no garment can be worth it.
-    const double least = options_.least_gain * silhouette_.area();
-    std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.pixels < least; });
+    // Without enough person pixels beside the bare body no garment can reach min_gain.
+    const double minimum = options_.min_gain * silhouette_.area();
+    std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.pixels < minimum; });
     if (candidates.size() > kTriedAgain) candidates.resize(kTriedAgain);
     for (size_t i = 0; i < std::min(kSwung, candidates.size()); ++i) {
       for (const double swing : kSwings_rad) candidates.push_back({candidates[i].cut, swing});
@@ -125,14 +124,15 @@ class ClothesFit {
     return best;
   }
 
-  /// Each, let down: as long as it covers most.
-  void TryOn(const ClothWearer& wearer, const VisibilityBuffer& bare, std::vector<Candidate>* candidates) const {
+  /// Simulates garments on the body and keeps for each the length that covers most.
+  void TryOn(const ClothCollisionBody& wearer, const VisibilityBuffer& bare, std::vector<Candidate>* candidates) const {
     ParallelFor(static_cast<int>(candidates->size()), options_.num_threads,
                 [&](int i) { (*candidates)[i] = AsLongAsItCoversMost(wearer, bare, (*candidates)[i]); });
   }
 
-  /// The garment, let down and cut off at the row down to which it covers most.
-  Candidate AsLongAsItCoversMost(ClothWearer wearer, const VisibilityBuffer& bare, const Candidate& tried) const {
+  /// The garment after simulation, cut at the row down to which it covers most.
+  Candidate AsLongAsItCoversMost(ClothCollisionBody wearer, const VisibilityBuffer& bare,
+                                 const Candidate& tried) const {
     wearer.Wear(wearer.Cut(tried.cut, kSeed));
     const LooseGarment& garment = wearer.garment();
     const VisibilityBuffer seen = SeeGarment(
@@ -152,13 +152,13 @@ class ClothesFit {
   }
 
   /// E of the dressed body.
-  double Unlike(const FittedClothes& clothes) const {
+  double MaskError(const FittedClothes& clothes) const {
     const BodyModel clothed(BakeShape(body_, betas_, clothes.offsets.metres));
     const Track track = OfBakedBody(photo_);
     VisibilityBuffer body, cloth;
     body.Render(TrackVertices(clothed, track, 0), clothed.data().faces, silhouette_.camera());
     if (clothes.garment.length_m > 0) {
-      ClothWearer wearer(clothed, track.motion.betas, {});
+      ClothCollisionBody wearer(clothed, track.motion.betas, {});
       LooseGarmentOptions coarse = clothes.garment;
       coarse.spacing_m = std::min(kCoarseSpacing_m, coarse.length_m);
       wearer.Wear(wearer.Cut(coarse, kSeed));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRestDamping = 4;  ///< 1/s
 
-/// A frame without a pose gets that of the one before it, the first ones that of the first which has one.
+/// Frames without a pose get that of the frame before; leading ones that of the first frame with a pose.
 Motion WithoutGaps(Motion motion) {
   int first = 0;
   while (first < motion.num_frames() && !motion.HasPose(first)) ++first;
@@ -27,8 +27,8 @@ Motion WithoutGaps(Motion motion) {
   return motion;
 }
 
-/// At rest sooner than a simulation that begins a dataset: a person is shown, and someone waits. By itself cloth swings
-/// for seconds, and what it does then tells nothing of the motion.
+/// More damping while settling than for datasets, as this runs interactively: undamped cloth swings for seconds,
+/// without relation to the motion.
 ClothRunOptions OptionsFor(const Track& track, const PersonClothOptions& shown) {
   ClothRunOptions options;
   options.up = SwungUp(track, shown.swing_rad);
@@ -36,15 +36,15 @@ ClothRunOptions OptionsFor(const Track& track, const PersonClothOptions& shown) 
   options.move_in_s = 0.8;
   options.settle_s = 0.8;
   options.rest_damping = kRestDamping;
-  options.cloth = OfRun(options.cloth, shown.run);
+  options.cloth = PerturbedOptions(options.cloth, shown.run);
   return options;
 }
 
 }  // namespace
 
 LooseGarment CutGarment(const BodyModel& clothed, LooseGarmentOptions* cut) {
-  constexpr uint64_t kSeed = 1;  // of how it is crumpled
-  LooseGarment garment = ClothWearer(clothed, Eigen::VectorXd(), {}).Cut(*cut, kSeed);
+  constexpr uint64_t kSeed = 1;  // of the initial wrinkles
+  LooseGarment garment = ClothCollisionBody(clothed, Eigen::VectorXd(), {}).Cut(*cut, kSeed);
   cut->columns = garment.columns;
   return garment;
 }

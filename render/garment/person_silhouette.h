@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The pixels of a person in a picture that is small enough to compare many drawings with.
+/// Silhouette of a person, downscaled for comparison with many renderings.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,12 +16,12 @@ namespace bodyloom {
 
 class PersonSilhouette {
  public:
-  /// `mask`: of the camera's picture, 0 where the person is not. The picture is scaled down until the person's pixels
-  /// span at most height_px rows.
+  /// `mask`: of the camera's image, 0 off the person. The image is scaled down until the person's pixels span at most
+  /// height_px rows.
   PersonSilhouette(const Camera& camera, const LabelImage& mask, int height_px);
 
-  [[nodiscard]] const Camera& camera() const { return camera_; }  ///< of the small picture
-  /// x and y inside of it.
+  [[nodiscard]] const Camera& camera() const { return camera_; }  ///< of the small image
+  /// x and y must lie in the small image.
   [[nodiscard]] bool IsPerson(int x, int y) const { return person_[size_t(y) * camera_.width + x] != 0; }
   [[nodiscard]] int area() const { return area_; }  ///< pixels of the person
 
@@ -31,14 +31,14 @@ class PersonSilhouette {
   int area_ = 0;
 };
 
-/// Cloth as a camera sees it, from both sides; `cloth`: places of its vertices, camera frame. Faces are those of
-/// LooseGarment::cloth: row by row from the pinned ring down, two a column.
+/// Renders both sides of cloth; `cloth`: positions of its vertices, camera frame. Faces are those of
+/// LooseGarment::cloth: row by row from the pinned ring down, two per column.
 VisibilityBuffer SeeGarment(const LooseGarment& garment, std::span<const Eigen::Vector3d> cloth, const Camera& camera);
 
-/// Pixels that show the person or else a body or cloth, but not both.
+/// Number of pixels in the symmetric difference of the person and of body and cloth together.
 int UnlikePixels(const PersonSilhouette& silhouette, const VisibilityBuffer& body, const VisibilityBuffer& cloth);
 
-/// By row of faces: how many pixels beside the bare body show cloth where the person is, less those where nobody is.
+/// Per row of faces: pixels beside the bare body that show cloth on the person minus those on the background.
 std::vector<int> CoveredBeside(const PersonSilhouette& silhouette, const VisibilityBuffer& bare,
                                const VisibilityBuffer& garment_seen, const LooseGarment& garment);
 

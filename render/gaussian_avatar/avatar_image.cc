@@ -11,11 +11,11 @@
 
 namespace bodyloom {
 
-void LayOver(const SplatPicture& picture, Image* whole) {
-  const PixelBox& window = picture.window();
-  const std::span<const float> alpha = picture.plane(SplatPicture::kAlpha);
+void LayOver(const SplatImage& image, Image* whole) {
+  const PixelBox& window = image.window();
+  const std::span<const float> alpha = image.plane(SplatImage::kAlpha);
   for (int c = 0; c < 3; ++c) {
-    const std::span<const float> plane = picture.plane(static_cast<SplatPicture::Plane>(2 - c));
+    const std::span<const float> plane = image.plane(static_cast<SplatImage::Plane>(2 - c));
     for (int y = window.y_begin; y < window.y_end; ++y) {
       for (int x = window.x_begin; x < window.x_end; ++x) {
         const size_t i = window.IndexOf(x, y);
@@ -27,34 +27,34 @@ void LayOver(const SplatPicture& picture, Image* whole) {
   }
 }
 
-std::vector<uint8_t> WithAlpha(const SplatPicture& picture, int width, int height) {
+std::vector<uint8_t> WithAlpha(const SplatImage& image, int width, int height) {
   std::vector<uint8_t> bgra(4 * static_cast<size_t>(width) * height, 0);
-  const PixelBox& window = picture.window();
+  const PixelBox& window = image.window();
   for (int y = window.y_begin; y < window.y_end; ++y) {
     for (int x = window.x_begin; x < window.x_end; ++x) {
       const size_t i = window.IndexOf(x, y);
-      const float alpha = picture.plane(SplatPicture::kAlpha)[i];
+      const float alpha = image.plane(SplatImage::kAlpha)[i];
       uint8_t* to = bgra.data() + 4 * (static_cast<size_t>(y) * width + x);
       const auto byte = [](float v) { return static_cast<uint8_t>(std::lround(255 * std::clamp(v, 0.0F, 1.0F))); };
       to[3] = byte(alpha);
       if (to[3] == 0) continue;
-      for (int c = 0; c < 3; ++c) to[c] = byte(picture.plane(static_cast<SplatPicture::Plane>(2 - c))[i] / alpha);
+      for (int c = 0; c < 3; ++c) to[c] = byte(image.plane(static_cast<SplatImage::Plane>(2 - c))[i] / alpha);
     }
   }
   return bgra;
 }
 
-Image LabelsOf(const SplatPicture& picture, std::span<const float> garment, int width, int height) {
-  const PixelBox& window = picture.window();
+Image LabelsOf(const SplatImage& image, std::span<const float> garment, int width, int height) {
+  const PixelBox& window = image.window();
   BODYLOOM_CHECK(garment.empty() || garment.size() == window.area(), "labels of an avatar: a garment of ",
                  garment.size(), " pixels for a window of ", window.area());
-  const std::span<const float> alpha = picture.plane(SplatPicture::kAlpha);
+  const std::span<const float> alpha = image.plane(SplatImage::kAlpha);
   Image labels(width, height);
   for (int y = window.y_begin; y < window.y_end; ++y) {
     for (int x = window.x_begin; x < window.x_end; ++x) {
       const size_t i = window.IndexOf(x, y);
-      const bool is_garment = !garment.empty() && garment[i] >= kLeastGarmentShare;
-      if (!is_garment && !(alpha[i] >= kLeastAlpha)) continue;
+      const bool is_garment = !garment.empty() && garment[i] >= kMinGarmentShare;
+      if (!is_garment && !(alpha[i] >= kMinAlpha)) continue;
       std::fill_n(labels.pixel(x, y), 3, static_cast<uint8_t>(is_garment ? PersonLabel::kBottom : PersonLabel::kSkin));
     }
   }

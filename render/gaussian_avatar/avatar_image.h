@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The window in which a person of Gaussians was drawn, in a picture of the whole size.
+/// Converts the window in which a person of Gaussians was rendered to images of full size.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +8,24 @@
 
 #include "geometry/scene/person_label.h"
 #include "render/image/image.h"
-#include "render/splat/splat_picture.h"
+#include "render/splat/splat_image.h"
 
 namespace bodyloom {
 
-/// Lays the person over the picture `whole`.
-void LayOver(const SplatPicture& picture, Image* whole);
+/// Composites the person over the image `whole`.
+void LayOver(const SplatImage& image, Image* whole);
 
-/// height × width × 4: straight colours and alpha, blue green red alpha as images have them; 0 outside the window.
-std::vector<uint8_t> WithAlpha(const SplatPicture& picture, int width, int height);
+/// height × width × 4: blue, green, red (not premultiplied) and alpha; 0 outside the window.
+std::vector<uint8_t> WithAlpha(const SplatImage& image, int width, int height);
 
-// What the pixels of a person of Gaussians show, as a single-person dataset says it.
+// Pixel labels of a rendered person of Gaussians in the format of a single-person dataset.
 
-constexpr float kLeastAlpha = 0.5F;         ///< of a pixel that shows the person
-constexpr float kLeastGarmentShare = 0.5F;  ///< of a pixel that shows the garment
+constexpr float kMinAlpha = 0.5F;         ///< of a pixel of the person
+constexpr float kMinGarmentShare = 0.5F;  ///< of a pixel of the garment
 
-/// A pixel's label: kBottom where the garment (skirt, dress or coat) makes at least kLeastGarmentShare of it, kSkin on
-/// the rest of the person, whose clothes nobody told apart, kBackground where alpha is below kLeastAlpha. Index in all
-/// channels, width × height. `garment`: its share of the window's pixels; empty: none is worn.
-Image LabelsOf(const SplatPicture& picture, std::span<const float> garment, int width, int height);
+/// Label image: kBottom where the garment (skirt, dress or coat) covers at least kMinGarmentShare of a pixel, kSkin on
+/// the rest of the person, whose clothes are not distinguished, kBackground where alpha is below kMinAlpha. Index in
+/// all channels, width × height. `garment`: its share of each pixel of the window; empty: none is worn.
+Image LabelsOf(const SplatImage& image, std::span<const float> garment, int width, int height);
 
 }  // namespace bodyloom

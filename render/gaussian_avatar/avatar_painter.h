@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person of Gaussians in a picture, from the body's pose to pixels, and the way back of derivatives.
+/// Renders a person of Gaussians from the body's pose to pixels, and backpropagates derivatives.
 #pragma once
 
 #include <array>
@@ -12,36 +12,35 @@
 
 namespace bodyloom {
 
-/// How a person is looked at.
+/// View in which a person is rendered.
 struct AvatarView {
   Camera camera;                 ///< without distortion
-  PixelBox window;               ///< what is drawn of the picture
+  PixelBox window;               ///< pixels to render
   PoseGaussiansOptions options;  ///< light and threads; the latter for all stages
 };
 
-/// Keeps its memory between pictures. Not for use by two threads at once.
+/// Keeps its memory between images. Not for use by two threads at once.
 class AvatarPainter {
  public:
-  /// Throws as PoseGaussians, ProjectGaussians and SplatPicture::Draw.
+  /// Renders the person in a frame. Throws as PoseGaussians, ProjectGaussians and SplatImage::Draw.
   void Draw(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame, const AvatarView& view);
 
-  [[nodiscard]] const SplatPicture& picture() const { return picture_; }
-  /// Of the picture last drawn, a number a pixel of the window: how much of it is Gaussians of a kind of `body`, which
-  /// was drawn, in [0, 1].
+  [[nodiscard]] const SplatImage& image() const { return image_; }
+  /// Share, in [0, 1], of Gaussians of one kind in each pixel of the window last drawn from `body`.
   [[nodiscard]] std::vector<float> ShareOf(GaussianKind kind, const GaussianBody& body);
   [[nodiscard]] const ScreenGaussians& screen() const { return screen_; }
   [[nodiscard]] const CameraGaussians& posed() const { return posed_; }
 
-  /// From d loss / d planes of what was last drawn, with the same arguments.
+  /// Computes the gradient from d loss / d planes of the image last drawn, with the same arguments as Draw().
   void GoBack(const GaussianBody& body, const MatrixX3i& faces, const AvatarFrame& frame, const AvatarView& view,
               const FloatColumns& by_planes, AvatarGradient* gradient);
-  /// By the Gaussians on the screen, of the last GoBack().
+  /// Derivatives by the Gaussians on the screen, from the last backward pass.
   [[nodiscard]] const FloatColumns& by_screen() const { return by_screen_; }
 
  private:
   CameraGaussians posed_;
   ScreenGaussians screen_;
-  SplatPicture picture_;
+  SplatImage image_;
   SplatGradient splat_gradient_;
   PoseGradient pose_gradient_;
   FloatColumns by_screen_, by_posed_;

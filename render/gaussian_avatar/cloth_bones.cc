@@ -10,7 +10,7 @@ namespace {
 
 using RowMatrix34f = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
 
-/// Where a bone takes a point, taken on by R and t.
+/// Composes a bone with the rigid motion (R, t).
 RowMatrix34f TakenOn(const Eigen::Matrix3f& R, const Eigen::Vector3f& t, const RowMatrix34f& bone) {
   RowMatrix34f on = R * bone;
   on.col(3) += t;
@@ -68,7 +68,7 @@ void CarryBones(const AvatarFrame& frame, AvatarFrame* corrected) {
   const Eigen::Index joints = corrected->rest_joints.rows(), all = frame.rest_joints.rows();
   if (all == joints) return;
   BODYLOOM_CHECK(joints > 0 && all > joints, "bones of cloth: a frame of ", all, " bones, expected at least ", joints);
-  // The root's bone takes rest space to R x + t, so what goes with it moves by R' Rᵀ about that.
+  // The root's bone maps rest space to R x + t, so a rigid motion with it is R' Rᵀ about that point.
   const RowMatrix34f before = BoneAt(frame.bones.data(), 0), after = BoneAt(corrected->bones.data(), 0);
   const Eigen::Matrix3f R = after.leftCols<3>() * before.leftCols<3>().transpose();
   const Eigen::Vector3f t = after.col(3) - R * before.col(3);

@@ -16,12 +16,12 @@ namespace {
 using Eigen::Vector3d;
 using Body = GaussianBody;
 
-/// A place on cloth.
+/// A point on cloth.
 struct ClothPlace {
   Vector3d place, normal;
 };
 
-/// The garment's faces as sewn, by area.
+/// Area-weighted sampling of the garment's faces as sewn.
 class SewnFaces {
  public:
   explicit SewnFaces(const LooseGarment& garment) : garment_(garment) {
@@ -33,7 +33,7 @@ class SewnFaces {
 
   [[nodiscard]] double area() const { return area_; }
 
-  /// `share` in [0, 1) of the area chooses the face, a and b in [0, 1) the place on it.
+  /// `share` in [0, 1) of the area selects the face, a and b in [0, 1) the point on it.
   [[nodiscard]] ClothPlace At(double share, double a, double b) const {
     const auto found = std::upper_bound(up_to_.begin(), up_to_.end(), share * area_);
     const auto f = std::min<Eigen::Index>(found - up_to_.begin(), garment_.cloth.faces.rows() - 1);
@@ -77,7 +77,7 @@ GaussianBody ClothGaussians(const BodyModel& model, const Eigen::VectorXd& betas
   Body body;
   body.Resize(count);
   for (int i = 0; i < count; ++i) {
-    // Places on faces by an additive recurrence of the plastic number, which leaves neither gaps nor heaps.
+    // Points on faces from the R2 low-discrepancy sequence (additive recurrence of the plastic number).
     const auto [place, normal] =
         faces.At((i + 0.5) / count, std::fmod(0.7548776662466927 * i, 1), std::fmod(0.5698402909980532 * i, 1));
     SetFlatGaussian({place, normal, options.sigma * apart, options.flatness, options.opacity_logit, options.albedo}, i,

@@ -29,7 +29,7 @@ bool GaussianBody::IsValid(int num_joints, int num_faces, std::string* why) cons
                   " joints, ", anchors.size(), " anchors, ", kinds.size(), " kinds, expected ",
                   static_cast<int>(kNumParameters), ", ", count * kInfluences, ", ", count, ", ", count);
   }
-  // Whole arrays first, which is what vectors are good at; this runs every frame.
+  // Reductions over whole arrays, which vectorise; this runs every frame.
   uint32_t largest_joint = 0, largest_face = 0;
   for (const int32_t joint : joints) largest_joint = std::max(largest_joint, static_cast<uint32_t>(joint));
   for (const SkinAnchor& anchor : anchors) largest_face = std::max(largest_face, static_cast<uint32_t>(anchor.face));
@@ -44,19 +44,19 @@ bool GaussianBody::IsValid(int num_joints, int num_faces, std::string* why) cons
 
 bool ScaleLimits::IsValid(std::string* why) const {
   const InRange in_range(why);
-  return in_range("least_log", least_log, -30, 30) && in_range("most_log", most_log, least_log, 30) &&
-         in_range("needle", needle, 1, 1e6);
+  return in_range("min_log", min_log, -30, 30) && in_range("max_log", max_log, min_log, 30) &&
+         in_range("max_axis_ratio", max_axis_ratio, 1, 1e6);
 }
 
 int LimitScales(const ScaleLimits& limits, GaussianBody* body) {
   std::string why;
   BODYLOOM_CHECK(limits.IsValid(&why), "scale limits: ", why);
-  const float longest_over_second = std::log(limits.needle);
+  const float longest_over_second = std::log(limits.max_axis_ratio);
   int changed = 0;
   for (int i = 0; i < body->size(); ++i) {
     std::array<float, 3> scale;
     for (int k = 0; k < 3; ++k) {
-      scale[k] = std::clamp(body->parameters(i, GaussianBody::kLogScale + k), limits.least_log, limits.most_log);
+      scale[k] = std::clamp(body->parameters(i, GaussianBody::kLogScale + k), limits.min_log, limits.max_log);
     }
     const int longest = static_cast<int>(std::max_element(scale.begin(), scale.end()) - scale.begin());
     const float second = std::max(scale[(longest + 1) % 3], scale[(longest + 2) % 3]);
@@ -73,7 +73,7 @@ int LimitScales(const ScaleLimits& limits, GaussianBody* body) {
 }
 
 void SetFlatGaussian(const FlatGaussian& gaussian, int row, GaussianBody* body) {
-  constexpr double kLeastSigma_m = 1e-5;
+  constexpr double kMinSigma_m = 1e-5;
   using Body = GaussianBody;
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), gaussian.normal);
   const float quaternion[4] = {float(turn.w()), float(turn.x()), float(turn.y()), float(turn.z())};
@@ -83,7 +83,7 @@ void SetFlatGaussian(const FlatGaussian& gaussian, int row, GaussianBody* body) 
     p(row, Body::kPosition + k) = static_cast<float>(gaussian.place[k]);
     p(row, Body::kNormal + k) = static_cast<float>(gaussian.normal[k]);
     p(row, Body::kLogScale + k) =
-        static_cast<float>(std::log(std::max(kLeastSigma_m, gaussian.sigma_m * (k == 2 ? gaussian.flatness : 1))));
+        static_cast<float>(std::log(std::max(kMinSigma_m, gaussian.sigma_m * (k == 2 ? gaussian.flatness : 1))));
     p(row, Body::kAlbedo + k) = gaussian.albedo;
   }
   p(row, Body::kOpacityLogit) = gaussian.opacity_logit;

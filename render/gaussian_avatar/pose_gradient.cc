@@ -14,7 +14,7 @@ using avatar_internal::kLanes;
 
 constexpr int kLightSums = GaussianBody::kLightValues * kLanes;
 
-/// From derivatives by [R | t], t = p − R j, to those by [R | p].
+/// Converts derivatives by [R | t], t = p − R j, to those by [R | p].
 void ToJointPlace(const MatrixX3f& rest_joints, std::vector<float>* bones) {
   for (int j = 0; j < rest_joints.rows(); ++j) {
     for (int r = 0; r < 3; ++r) {

@@ -39,15 +39,15 @@ constexpr int kN = static_cast<int>(hn::MaxLanes(DF()));
 constexpr int kInfluences = Body::kInfluences;
 constexpr float kSh1 = 0.48860251F, kSh2 = 1.09254843F, kSh3 = 0.31539157F, kSh4 = 0.54627421F, kSh0 = 0.28209479F;
 
-/// Sixteen Gaussians: their weights, and the bones blended by them.
+/// Sixteen Gaussians: their weights and blended bones.
 struct Block {
   alignas(64) float weight[kInfluences][kLanes];
   alignas(64) float bone[3][kLanes][4];  ///< rows of [A | t]
   alignas(64) float corrective[kLanes][4];
-  alignas(64) float is_live[kLanes];  ///< backwards: 1 for rows that any derivative reaches, else 0
+  alignas(64) float is_live[kLanes];  ///< backward pass: 1 for rows with nonzero derivatives, else 0
 };
 
-/// Rows of columns, from a row on.
+/// Reads columns from a given row on.
 struct Reader {
   const float* data;
   size_t stride;
@@ -57,13 +57,13 @@ struct Reader {
 
 HWY_INLINE void FindWeights(const Reader& parameters, int lane, Block* block) {
   const DF d;
-  VF logit[kInfluences], most = parameters(Body::kWeightLogit), sum = hn::Zero(d);
+  VF logit[kInfluences], maximum = parameters(Body::kWeightLogit), sum = hn::Zero(d);
   for (int k = 0; k < kInfluences; ++k) {
     logit[k] = parameters(Body::kWeightLogit + k);
-    most = hn::Max(most, logit[k]);
+    maximum = hn::Max(maximum, logit[k]);
   }
   for (int k = 0; k < kInfluences; ++k) {
-    logit[k] = Exp(d, hn::Sub(logit[k], most));
+    logit[k] = Exp(d, hn::Sub(logit[k], maximum));
     sum = hn::Add(sum, logit[k]);
   }
   for (int k = 0; k < kInfluences; ++k) hn::Store(hn::Div(logit[k], sum), d, block->weight[k] + lane);
@@ -106,7 +106,7 @@ HWY_INLINE void LoadBone(const Block& block, int lane, Mat3* a, Vec3* t) {
   hn::LoadInterleaved4(d, block.bone[2][lane], a->r2.x, a->r2.y, a->r2.z, t->z);
 }
 
-/// A vector made unit length, and 1 over its length; both zero where it is shorter than 1e-6.
+/// Normalises a vector and returns 1 over its length; both zero if it is shorter than 1e-6.
 HWY_INLINE VF Normalise(Vec3* v) {
   const DF d;
   const VF square = Dot(*v, *v);
@@ -117,8 +117,8 @@ HWY_INLINE VF Normalise(Vec3* v) {
 }
 
 struct Turn {
-  VF w, x, y, z;  ///< of length 1; zeros, which make the identity, where what was given is no rotation
-  VF inverse;     ///< 1 over the length of what was given; 0 where that is no rotation
+  VF w, x, y, z;  ///< unit length; zeros, which give the identity, if the input is no rotation
+  VF inverse;     ///< 1 over the length of the input; 0 if it is no rotation
   Mat3 r;
 };
 
@@ -147,7 +147,7 @@ HWY_INLINE Turn TurnOf(const Reader& parameters) {
   return t;
 }
 
-/// Y_h of a unit vector (render/lighting/sh_lighting.h).
+/// Computes Y_h of a unit vector (render/lighting/sh_lighting.h).
 HWY_INLINE void FindBasis(Vec3 n, VF* basis) {
   const DF d;
   const VF c1 = hn::Set(d, kSh1), c2 = hn::Set(d, kSh2);
@@ -159,7 +159,7 @@ HWY_INLINE void FindBasis(Vec3 n, VF* basis) {
   basis[8] = hn::Mul(hn::Set(d, kSh4), hn::Sub(hn::Mul(n.x, n.x), hn::Mul(n.y, n.y)));
 }
 
-/// Everything of one register of Gaussians that both directions need.
+/// Values of one register of Gaussians shared by both passes.
 struct Pose {
   Mat3 a;
   Vec3 t, rest;
@@ -244,7 +244,7 @@ void PoseRows(const PoseTables& tables, int first, int last, float* posed, size_
   }
 }
 
-/// By a quaternion of any length, from that by the rotation matrix.
+/// Derivative by a quaternion of any length, from that by the rotation matrix.
 HWY_INLINE void FindByQuaternion(const Turn& t, const Mat3& g, VF* by) {
   const DF d;
   const VF two = hn::Set(d, 2.0F);
@@ -261,7 +261,7 @@ HWY_INLINE void FindByQuaternion(const Turn& t, const Mat3& g, VF* by) {
   by[0] = across(gw, t.w), by[1] = across(gx, t.x), by[2] = across(gy, t.y), by[3] = across(gz, t.z);
 }
 
-/// By the unit normal in the light's frame; adds to the sums by the light.
+/// Derivative by the unit normal in the light's frame; adds to the sums for the light.
 HWY_INLINE Vec3 FindByNormal(const PoseTables& tables, const Pose& pose, MF is_live, Vec3 by_colour,
                              float* light_sums) {
   const DF d;
@@ -288,7 +288,7 @@ HWY_INLINE Vec3 FindByNormal(const PoseTables& tables, const Pose& pose, MF is_l
           hn::Add(line(g[2], n.y, g[5], n.x, g[7]), hn::Mul(hn::Set(d, 6 * kSh3), hn::Mul(n.z, g[6])))};
 }
 
-/// By the weights' logits, from that by [A | t] in block->bone; adds to the sums by the bones.
+/// Derivatives by the weights' logits, from that by [A | t] in block->bone; adds to the sums for the bones.
 HWY_INLINE void GoBackThroughBlend(const PoseTables& tables, int first, int last, const Block& block,
                                    float* by_parameters, size_t stride, float* bone_sums) {
   const DF d;
@@ -342,13 +342,13 @@ void PoseRowsBackward(const PoseTables& tables, const float* by_posed, size_t by
       const int at = i + lane;
       Pose pose;
       FindPose(tables, at, block, lane, &pose);
-      const auto count = static_cast<size_t>(std::clamp(last - at, 0, kN));  // spare rows must not reach the sums
+      const auto count = static_cast<size_t>(std::clamp(last - at, 0, kN));  // excludes spare rows from the sums
       const MF exists = hn::FirstN(d, count);
       MF is_live = hn::MaskFromVec(hn::Zero(d));
       for (int c = 0; c < Posed::kNumColumns; ++c) {
         is_live = hn::Or(is_live, hn::Ne(hn::Load(d, by_posed + by_posed_stride * c + at), hn::Zero(d)));
       }
-      // What is not drawn may hold NaN, which no zero takes away.
+      // Rows that are not drawn may hold NaN, which multiplication by zero does not remove.
       is_live = hn::And(is_live, exists);
       hn::Store(hn::IfThenElseZero(is_live, one), d, block.is_live + lane);
       const auto given = [&](int column) HWY_ATTR {
@@ -374,7 +374,7 @@ void PoseRowsBackward(const PoseTables& tables, const float* by_posed, size_t by
       by_normal = by_normal - Dot(by_normal, pose.normal) * pose.normal;
       by_normal = pose.normal_inverse * (frame_from_light * by_normal);
       store3(Body::kNormal, to_rest * by_normal);
-      // Place and shape.
+      // Position and shape.
       const Vec3 by_place = given3(Posed::kX);
       store3(Body::kPosition, to_rest * by_place);
       const Mat3 by_factor = {given3(Posed::kFactor), given3(Posed::kFactor + 3), given3(Posed::kFactor + 6)};
@@ -392,7 +392,7 @@ void PoseRowsBackward(const PoseTables& tables, const float* by_posed, size_t by
       FindByQuaternion(pose.turn, {scaled(g.r0), scaled(g.r1), scaled(g.r2)}, by_quaternion);
       for (int k = 0; k < 4; ++k) store(Body::kQuaternion + k, by_quaternion[k]);
       store(Body::kOpacityLogit, hn::Mul(given(Posed::kOpacity), hn::Mul(pose.opacity, hn::Sub(one, pose.opacity))));
-      // The blended bone takes part in all three.
+      // All three depend on the blended bone.
       const Mat3 by_a =
           (TimesTransposed(by_factor, pose.shape) + Outer(by_place, pose.rest)) + Outer(by_normal, pose.rest_normal);
       hn::StoreInterleaved4(by_a.r0.x, by_a.r0.y, by_a.r0.z, by_place.x, d, block.bone[0][lane]);

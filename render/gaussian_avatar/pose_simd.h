@@ -29,7 +29,7 @@ struct PoseTables {
 /// written.
 void PoseRows(const PoseTables& tables, int first, int last, float* posed, size_t posed_stride);
 
-/// Sums over rows, to be added up.
+/// Sums over rows, accumulated.
 struct PoseSums {
   float* bones = nullptr;  ///< J × 12: by [R_k | t_k]
   float* light = nullptr;  ///< 27 × kLanes

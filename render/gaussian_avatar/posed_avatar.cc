@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kRoomForClothes = 0.25;  ///< of the body's longer side, on every side
+constexpr double kRoomForClothes = 0.25;  ///< share of the body's longer side, on every side
 
 }  // namespace
 
@@ -25,7 +25,7 @@ PosedAvatar::PosedAvatar(const BodyModel& body, const Track& track, std::vector<
       scale_(scale),
       num_threads_(num_threads) {
   if (track.camera.HasDistortion()) {
-    throw std::runtime_error(where + ": its camera's lens is distorted; undistort the pictures and track them first");
+    throw std::runtime_error(where + ": its camera's lens is distorted; undistort the images and track them first");
   }
   const Camera camera = scale == 1 ? track.camera : ScaledCamera(track.camera, scale);
   width_ = camera.width, height_ = camera.height;
@@ -63,7 +63,7 @@ Camera PosedAvatar::CameraAt(int t) const {
 PixelBox PosedAvatar::BoxAt(int t, double share) const {
   const PersonExtent& extent = extents_[t];
   const double room = share * (extent.max - extent.min).maxCoeff();
-  // An extent may reach as far as a limb near the camera is thrown.
+  // Extents may be huge if a limb is near the camera plane.
   const auto low = [&](int c) { return static_cast<int>(std::floor(std::max(-1e6, scale_ * (extent.min[c] - room)))); };
   const auto high = [&](int c) {
     return static_cast<int>(std::ceil(std::min(1e6, scale_ * (extent.max[c] + room)))) + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A track's frames as a person of Gaussians is posed and looked at in them.
+/// Provides poses and views of a track's frames for rendering a person of Gaussians.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace bodyloom {
 /// Keeps references to body and track.
 class PosedAvatar {
  public:
-  /// `yaw_deg` as PosedTrack's. `scale`: pictures so many times as large as the track's. Throws std::runtime_error
+  /// `yaw_deg`: as for PosedTrack. `scale`: size of the images relative to the track's. Throws std::runtime_error
   /// naming `where` when the camera's lens is distorted.
   PosedAvatar(const BodyModel& body, const Track& track, std::vector<double> yaw_deg, double scale, int num_threads,
               const std::string& where);
@@ -24,18 +24,18 @@ class PosedAvatar {
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] bool HasResult(int t) const { return track_.HasResult(t) && !extents_[t].empty(); }
 
-  /// From now on frames have the bones of a garment: frame t those of shown[t], or of t where `shown` is empty.
+  /// Adds the bones of a garment to frames from now on: to frame t those of shown[t], or of t if `shown` is empty.
   void Wear(GarmentBones bones, std::vector<int> shown = {});
   [[nodiscard]] const GarmentBones& garment() const { return garment_; }  ///< without frames: none
 
-  /// Of a frame with a result.
+  /// Creates the frame t, which must have a result.
   void MakeFrame(int t, AvatarFrame* frame) const;
-  /// Bones of another run of the garment in frame t, as MakeFrame() appends those of the one that is worn.
+  /// Bones of another run of the garment in frame t, in the format in which MakeFrame() appends those of the worn one.
   [[nodiscard]] std::vector<float> SeenCloth(int t, const GarmentBones& run) const;
   [[nodiscard]] Camera CameraAt(int t) const;
-  /// What the bare body spans, grown by `share` of its longer side; clipped to the picture.
+  /// Box of the bare body, grown by `share` of its longer side; clipped to the image.
   [[nodiscard]] PixelBox BoxAt(int t, double share) const;
-  /// Camera, window with room for clothes, and the light as it was in the track's own view.
+  /// Camera, window with a margin for clothes, and the light of the track's own view.
   [[nodiscard]] AvatarView ViewAt(int t) const;
 
  private:
@@ -46,7 +46,7 @@ class PosedAvatar {
   AvatarFrames frames_;
   double scale_;
   int num_threads_, width_, height_;
-  std::vector<PersonExtent> extents_;  ///< pixels of the track's picture
+  std::vector<PersonExtent> extents_;  ///< pixels of the track's image
   GarmentBones garment_;
   std::vector<int> shown_;
 };

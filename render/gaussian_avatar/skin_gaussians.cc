@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using Body = GaussianBody;
 
-/// Joints and weights of a point of the surface, heaviest first.
+/// Weights and joints of a point of the surface, in descending order of weight.
 std::vector<std::pair<double, int>> WeightsAt(const BodyModel& model, int face, const Eigen::Vector3f& barycentric) {
   std::vector<std::pair<double, int>> weights;
   for (int c = 0; c < 3; ++c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The start of a person of Gaussians: one for every texel of the body's surface, flat along it.
+/// Initialises a person of Gaussians: one per texel of the body's surface, flat along it.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,17 +13,17 @@ namespace bodyloom {
 
 struct SkinGaussiansOptions {
   float texels_sigma = 0.6F;  ///< 0.01 to 100: standard deviation along the surface, in texels' widths there
-  float flatness = 0.37F;     ///< 0.001 to 1: … along the normal, as a part of that
+  float flatness = 0.37F;     ///< 0.001 to 1: σ along the normal relative to that along the surface
   float opacity_logit = 2;    ///< −20 to 20: 0.88
   float albedo = 0.4F;        ///< 0 to 1: grey
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-/// One Gaussian a texel of `texels` (gutters left out), in their order: at the texel's place on the body's shape in
-/// T-pose, the third axis along the face's normal, with the six largest skin weights there (fewer: joint 0 at 1e-6),
-/// anchored with corrective factor 1. A texel's width is the root of its area on the surface. The light is even:
-/// shading 1 everywhere. Throws std::invalid_argument when options are not valid, betas are longer than the body's, or
-/// the table is not of a body with UV.
+/// Creates one Gaussian per texel of `texels` (without gutters), in their order: at the texel's point on the body's
+/// shape in T-pose, the third axis along the face's normal, with the six largest skinning weights (padded by joint 0 at
+/// 1e-6), anchored with corrective factor 1. A texel's width is the square root of its area on the surface. The light
+/// is even: shading 1 everywhere. Throws std::invalid_argument when options are not valid, betas are longer than the
+/// body's, or the table is not of a body with UV.
 GaussianBody SkinGaussians(const BodyModel& model, const Eigen::VectorXd& betas, const UvTexelTable& texels,
                            const SkinGaussiansOptions& options = {});
 

@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr float kSameNode_m = 1e-4F;  ///< what a stored place may differ from one cut anew
+constexpr float kSameNode_m = 1e-4F;  ///< tolerance between a stored position and a recomputed one
 
 BodyModel Clothed(const BodyModel& body, const Eigen::VectorXd& betas, const AvatarGarment& garment) {
   return BodyModel(BakeShape(body, betas, std::vector<double>(garment.offsets_m.begin(), garment.offsets_m.end())));

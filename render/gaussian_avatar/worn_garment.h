@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The garment of a person of Gaussians, cut anew and simulated along tracks.
+/// Cuts the garment of a person of Gaussians from its stored measures and simulates it along tracks.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace bodyloom {
 
-/// Where a garment's nodes are in the frames of a track.
+/// Bones of a garment's nodes in the frames of a track.
 struct GarmentBones {
   MatrixX3d as_sewn;                         ///< K×3, rest space
   std::vector<std::vector<float>> of_frame;  ///< T of K×12, camera frame: render/gaussian_avatar/cloth_bones.h
@@ -22,17 +22,18 @@ struct GarmentBones {
 
 class WornGarment {
  public:
-  /// On the shape `betas` of `body`. Throws std::invalid_argument when the offsets are not the body's, or the garment
-  /// cannot be cut.
+  /// Cuts the garment on the shape `betas` of `body`. Throws std::invalid_argument when the offsets are not the body's,
+  /// or the garment cannot be cut.
   WornGarment(const BodyModel& body, const Eigen::VectorXd& betas, const AvatarGarment& garment);
 
   [[nodiscard]] const LooseGarment& mesh() const { return mesh_; }
   [[nodiscard]] const ClothNodes& nodes() const { return nodes_; }
 
-  /// The garment on the person in the track's motion, whatever shape the track's body has. Frames without a result go
-  /// on as the frame before them. Throws std::invalid_argument as ClothRun, Cancelled.
+  /// Simulates the garment on the person in the track's motion, with the person's own shape. Frames without a result
+  /// repeat the frame before. Throws std::invalid_argument as ClothRun, Cancelled.
   [[nodiscard]] GarmentBones Along(const Track& track, const PipelineCallbacks& callbacks) const;
-  /// So many runs of it (geometry/cloth/cloth_run.h), the first as above; 1 to kMostClothRuns.
+  /// As Along(), for several perturbed runs (geometry/cloth/cloth_run.h), the first equal to Along(); 1 to
+  /// kMaxClothRuns.
   [[nodiscard]] std::vector<GarmentBones> RunsAlong(const Track& track, int runs, int num_threads,
                                                     const PipelineCallbacks& callbacks) const;
 
@@ -42,10 +43,10 @@ class WornGarment {
   ClothNodes nodes_;
 };
 
-/// What is stored of clothes found in a clip, which have a garment.
+/// The stored form of clothes found in a clip, which must have a garment.
 AvatarGarment GarmentOf(const BodyModel& body, const Eigen::VectorXd& betas, const ClipClothes& clothes);
 
-/// A stored garment cut anew. Throws std::runtime_error naming `where` when its nodes are not the stored ones.
+/// Cuts a stored garment. Throws std::runtime_error naming `where` when its nodes differ from the stored ones.
 WornGarment CutAnew(const BodyModel& body, const Eigen::VectorXd& betas, const AvatarGarment& garment,
                     const std::string& where);
 

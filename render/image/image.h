@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// An 8-bit colour image that owns its pixels, and the few operations that drawing needs.
+/// An 8-bit colour image that owns its pixels, and basic operations on it.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct Colour {
   bool operator==(const Colour&) const = default;
 };
 
-/// Rows from top to bottom, three bytes a pixel in the order blue, green, red (OpenCV's).
+/// Rows from top to bottom, three bytes per pixel in the order blue, green, red (OpenCV's).
 struct Image {
   int width = 0, height = 0;
   std::vector<uint8_t> bgr;
@@ -31,22 +31,22 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-/// The backdrop where there is no video: a soft grey, lighter behind the person, darker towards the corners.
+/// Backdrop used without a video: grey, darker towards the corners.
 Image StudioBackdrop(int width, int height);
 
 /// Area mean when shrinking, bicubic when growing.
 Image Resized(const Image& image, int width, int height);
 
-/// Copies `source` into `target` with its top-left pixel at (x, y); what falls outside is left out.
+/// Copies `source` into `target` with its top-left pixel at (x, y); clipped at the borders.
 void Paste(const Image& source, int x, int y, Image* target);
 
-/// A colour value in [0, 1] as a byte, rounded from 255 times it at its own precision; values beyond are cut off.
+/// Converts a colour value in [0, 1] to a byte: 255 times the value, rounded at its own precision; clamped.
 template <std::floating_point T>
 uint8_t UnitByte(T value) {
   return static_cast<uint8_t>(std::lround(255 * std::clamp(value, T(0), T(1))));
 }
 
-/// The byte nearest to a value in [0, 255], halves upwards; std::lround is a call, and this is for every pixel.
+/// The byte nearest to a value in [0, 255], halves rounded up; faster than std::lround in loops over pixels.
 inline uint8_t NearestByte(double value) {
   const double shifted = value + 0.5;
   return static_cast<uint8_t>(shifted);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is known of a person in a picture, plane by plane: what the clothes parser reads
-/// (render/image/parser_weights.h). Colours are RGB in [0, 1].
+/// Input planes of the clothes parser (render/image/parser_weights.h) for a person in an image. Colours are RGB in [0,
+/// 1].
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 
 namespace bodyloom {
 
-/// Planes in their order.
+/// Indices of the planes.
 struct PersonPlane {
   static constexpr int kColour = 0;  ///< 3: RGB
-  static constexpr int kAlpha = 3;   ///< share of the pixel that shows the person
-  static constexpr int kNormal = 4;  ///< 3: of the surface at the pixel's centre, camera frame; 0 where there is none
-  static constexpr int kPlace = 7;   ///< 3: where that point lies on the body at rest, metres; 0 where there is none
+  static constexpr int kAlpha = 3;   ///< coverage of the pixel by the person
+  static constexpr int kNormal = 4;  ///< 3: of the surface at the pixel's centre, camera frame; 0 if there is none
+  static constexpr int kPlace = 7;   ///< 3: rest position of that point, metres; 0 where there is none
   static constexpr int kCount = 10;
 };
 
@@ -24,8 +24,8 @@ struct PersonPlane {
 inline constexpr int kLayersMultiple = 64;
 
 struct PersonLayers {
-  int x = 0, y = 0;           ///< pixel of the picture that is the box's first; may lie outside, where nobody is
-  int width = 0, height = 0;  ///< of the box; 0: nobody is in the picture
+  int x = 0, y = 0;           ///< image pixel of the box's first; may lie outside the image, where planes are empty
+  int width = 0, height = 0;  ///< of the box; 0: no person in the image
   std::vector<float> planes;  ///< PersonPlane::kCount × height × width
 
   [[nodiscard]] size_t pixels() const { return static_cast<size_t>(width) * height; }
@@ -34,7 +34,7 @@ struct PersonLayers {
   }
 };
 
-/// visit(x, y, i): the pixels of a picture of width × height that lie in the box, and where they are in a plane.
+/// Calls visit(x, y, i) for the pixels of a width × height image that lie in the box; i is their index in a plane.
 template <typename Visit>
 void ForEachPixel(const PersonLayers& layers, int width, int height, const Visit& visit) {
   for (int v = std::max(0, -layers.y); v < std::min(layers.height, height - layers.y); ++v) {
@@ -44,8 +44,8 @@ void ForEachPixel(const PersonLayers& layers, int width, int height, const Visit
   }
 }
 
-/// A box without planes around the pixels of a picture that are covered (not 0), as far from them on both sides,
-/// `reach` at least. Nobody where none is.
+/// Box, without planes, around the covered pixels of an image (not 0), centred on them, with a margin of at least
+/// `reach`. Empty if no pixel is covered.
 PersonLayers BoxAround(int width, int height, std::span<const uint8_t> coverage, int reach);
 
 }  // namespace bodyloom

@@ -70,7 +70,7 @@ class Fit {
     if (!(summary.spread >= options_.min_spread)) return;
     summary.status = FitLightingStatus::kDark;
     if (!Start(information)) return;
-    // The scale of the first kernel is that of the start; the second knows better.
+    // The scale of the first kernel is that of the initial residuals; the second's is re-estimated.
     Solve(std::make_unique<ceres::HuberLoss>(kHuber));
     const bool converged = Solve(std::make_unique<ceres::TukeyLoss>(kTukey));
     Normalise();
@@ -79,7 +79,7 @@ class Fit {
   }
 
  private:
-  /// Albedos from the medians of the labels, then least squares. False when there is no light.
+  /// Initialises albedos from the medians of the labels, then the light by least squares. False when there is no light.
   bool Start(const Eigen::Matrix<double, 9, 9>& information) {
     std::vector<std::vector<double>> by_label;
     for (const Sample& s : samples_) {
@@ -91,7 +91,7 @@ class Fit {
     median_ = Median(all);
     if (!(median_ > 0)) return false;
     for (const auto& lights : by_label) {
-      // A label as good as black would have no weight in the light; it starts a little brighter.
+      // A nearly black label would have no weight in the light; it starts a little brighter.
       result_.albedo.push_back(lights.empty() ? 0 : std::max(0.05, Median(lights) / median_));
       share_.push_back(double(lights.size()) / double(samples_.size()));
     }
@@ -104,7 +104,7 @@ class Fit {
     return true;
   }
 
-  /// Mean albedo 1, the light taking the factor.
+  /// Scales the albedos to mean 1 and the light by the inverse factor.
   void Normalise() {
     double mean = 0;
     for (size_t l = 0; l < share_.size(); ++l) mean += share_[l] * result_.albedo[l];
@@ -124,10 +124,9 @@ class Fit {
       sizes.push_back(std::abs(Residual(s)));
       brightest = std::max(brightest, std::abs(s.light));
     }
-    // A fit without any error still needs a scale, below which the kernels would take what the ridge costs for
-    // outliers.
-    const double least = std::max(1e-6 * brightest, options_.ridge * median_);
-    result_.summary.sigma = std::max(1.4826 * Median(sizes), least);
+    // A lower bound of the scale for a fit without error: below it the kernels would reject residuals due to the ridge.
+    const double minimum = std::max(1e-6 * brightest, options_.ridge * median_);
+    result_.summary.sigma = std::max(1.4826 * Median(sizes), minimum);
   }
 
   bool Solve(std::unique_ptr<ceres::LossFunction> loss) {
@@ -153,7 +152,7 @@ class Fit {
     return summary.termination_type == ceres::CONVERGENCE;
   }
 
-  /// The gauge pulls on the mean only; with one label the albedo is held instead.
+  /// Adds the gauge on the mean albedo; with a single label the albedo is held constant instead.
   void AddGauge(ceres::Problem* problem) {
     if (std::count_if(share_.begin(), share_.end(), [](double s) { return s > 0; }) == 1) {
       for (size_t l = 0; l < share_.size(); ++l) {

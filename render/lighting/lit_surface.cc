@@ -12,12 +12,12 @@
 namespace bodyloom {
 namespace {
 
-/// The shading of one colour as a quadratic function of the normal: nᵀ Q n + l·n + c, which is what nine coefficients
-/// are.
+/// The shading of one colour as a quadratic function of the normal, nᵀ Q n + l·n + c, equivalent to the nine
+/// coefficients.
 class Quadric {
  public:
   explicit Quadric(const Eigen::Matrix<double, 1, 9>& lighting) {
-    // By values at points that determine it, so that the basis stays in one place.
+    // Interpolated from values at points, so that the basis is defined in one place only.
     const auto at = [&](double x, double y, double z) { return lighting.dot(ShBasis({x, y, z})); };
     const double even_z = (at(0, 0, 1) + at(0, 0, -1)) / 2, r = std::sqrt(0.5);
     constant_ = even_z;  // z² = 1 − x² − y² on the sphere
@@ -39,32 +39,32 @@ class Quadric {
   std::array<double, 3> linear_;
 };
 
-/// In the order of a picture's channels: blue, green, red.
+/// Clamped shading of the three colours, in the order of an image's channels: blue, green, red.
 class LimitedShading {
  public:
   LimitedShading(const ShLighting& light, const ShadingLimits& limits)
       : colours_{Quadric(light.row(2)), Quadric(light.row(1)), Quadric(light.row(0))},
-        least_(static_cast<float>(limits.least)),
-        most_(static_cast<float>(limits.most)) {}
+        minimum_(static_cast<float>(limits.minimum)),
+        maximum_(static_cast<float>(limits.maximum)) {}
   [[nodiscard]] std::array<float, 3> At(const float* normal) const {
     std::array<float, 3> result{};
-    for (size_t c = 0; c < 3; ++c) result[c] = std::clamp(colours_[c].At(normal), least_, most_);
+    for (size_t c = 0; c < 3; ++c) result[c] = std::clamp(colours_[c].At(normal), minimum_, maximum_);
     return result;
   }
 
  private:
   std::array<Quadric, 3> colours_;
-  float least_, most_;
+  float minimum_, maximum_;
 };
 
-/// IEC 61966-2-1 by tables: light of a byte, and the byte of light.
+/// IEC 61966-2-1 by tables, in both directions.
 class Encoding {
  public:
   static const Encoding& Get() {
     static const Encoding encoding;
     return encoding;
   }
-  [[nodiscard]] float Decode(float byte) const {  // between bytes too: a colour over its coverage
+  [[nodiscard]] float Decode(float byte) const {  // fractional too: a colour divided by its coverage
     const int lower = std::min(static_cast<int>(byte), 254);
     return decoded_[lower] + (byte - static_cast<float>(lower)) * (decoded_[lower + 1] - decoded_[lower]);
   }
@@ -100,7 +100,7 @@ void LitSurface::Look(const MatrixX3d& vertices, const Camera& camera) {
   request.vertex_normals = &normals_.Compute(vertices, body_->data().faces);
   ResolvePixels(buffer_, *body_, vertices, camera, request, &pixels_);
   if (!both_sides_) return;
-  // By the face, not by its interpolated normal, which at an outline may look away where the face does not.
+  // Uses the face's own orientation: its interpolated normal may face away at an outline where the face does not.
   const MatrixX3i& faces = body_->data().faces;
   std::vector<uint8_t> looks_away(static_cast<size_t>(faces.rows()));
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
@@ -120,17 +120,17 @@ const float* LitSurface::NormalAt(int x, int y) const {
 }
 
 void LitSurface::CheckSizes(const ShadingLimits& limits, const Image& image) const {
-  BODYLOOM_CHECK(image.width == width_ && image.height == height_, "light: the picture is ", image.width, "x",
+  BODYLOOM_CHECK(image.width == width_ && image.height == height_, "light: the image is ", image.width, "x",
                  image.height, ", the camera's ", width_, "x", height_);
-  BODYLOOM_CHECK(limits.least > 0 && limits.least <= limits.most, "light: shading from ", limits.least, " to ",
-                 limits.most, ", expected 0 < least <= most");
+  BODYLOOM_CHECK(limits.minimum > 0 && limits.minimum <= limits.maximum, "light: shading from ", limits.minimum, " to ",
+                 limits.maximum, ", expected 0 < minimum <= maximum");
 }
 
 void LitSurface::Light(const ShLighting& light, const ShadingLimits& limits, std::span<const uint8_t> coverage,
                        Image* image) const {
   CheckSizes(limits, *image);
   BODYLOOM_CHECK(coverage.size() == static_cast<size_t>(width_) * height_,
-                 "light: the coverage is of another size than the picture");
+                 "light: the coverage is of another size than the image");
   const LimitedShading shading(light, limits);
   const Encoding& encoding = Encoding::Get();
   const PixelBox& box = buffer_.box();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The light on a body's surface in a picture: taken away from a photo, given to a drawn body.
-///   lit = Encode( Decode(even) · s ),   even = Encode( Decode(lit) / s ),   s = clamp(shading(n), least, most)
-/// colour by colour, n the surface's normal in the camera frame (render/lighting/sh_lighting.h), picture and light
-/// related as in IEC 61966-2-1. Light of strength 1 from everywhere changes nothing. Exact for Lambertian surfaces
-/// without cast shadows. The two are inverses of each other but for rounding to a byte and colours brighter than white.
+/// Removes the light on a body's surface from a photo and applies light to a rendered body.
+///   lit = Encode( Decode(even) · s ),   even = Encode( Decode(lit) / s ),   s = clamp(shading(n), minimum, maximum)
+/// per colour channel, n the surface's normal in the camera frame (render/lighting/sh_lighting.h), pixel values encoded
+/// as in IEC 61966-2-1. Uniform light of radiance 1 changes nothing. Exact for Lambertian surfaces without cast
+/// shadows. The two are inverses of each other up to rounding to a byte and clipping at white.
 #pragma once
 
 #include <cstdint>
@@ -21,31 +21,31 @@
 
 namespace bodyloom {
 
-/// Where s is cut off: what is darker shows the noise of dark pixels when light is taken away.
+/// Limits of s: removing darker light would amplify the noise of dark pixels.
 struct ShadingLimits {
-  double least = 0.05, most = 4;
+  double minimum = 0.05, maximum = 4;
 };
 
-/// Keeps its memory between pictures. Not for use by two threads at once.
+/// Keeps its memory between images. Not for use by two threads at once.
 class LitSurface {
  public:
-  /// `body` must outlive this. `both_sides`: faces that turn away are seen too, their normals turned to the viewer.
+  /// `body` must outlive this. `both_sides`: back faces are visible too, with normals flipped to the viewer.
   LitSurface(const BodyModel& body, bool both_sides, int num_threads);
 
-  /// What the camera sees: the normals of the pixels whose centres the body covers. `vertices_in_camera`: V×3, metres.
-  /// The same for any number of threads.
+  /// Computes the normals at the pixels whose centres the body covers. `vertices_in_camera`: V×3, metres. The same for
+  /// any number of threads.
   void Look(const MatrixX3d& vertices_in_camera, const Camera& camera);
 
-  /// Three numbers, unit length, camera frame; null where the body does not cover the pixel's centre.
+  /// Unit normal (3 floats), camera frame; null where the body does not cover the pixel's centre.
   [[nodiscard]] const float* NormalAt(int x, int y) const;
 
-  /// Lights the body, drawn over black in even light, of which `coverage`, one a pixel, says 0 to 255 how much of the
-  /// pixel it is. At the outline, where the body misses the pixel's centre, the shading is that of its neighbours.
+  /// Lights the body in an image rendered over black in even light. `coverage`: one per pixel, the share that the body
+  /// covers, 0 to 255. At the outline, where the body misses the pixel's centre, the shading is that of its neighbours.
   /// Throws std::invalid_argument when image, coverage and the camera of Look() differ in size, or for limits that are
-  /// not 0 < least <= most.
+  /// not 0 < minimum <= maximum.
   void Light(const ShLighting& light, const ShadingLimits& limits, std::span<const uint8_t> coverage,
              Image* image) const;
-  /// Takes the light away from a picture in which the body covers whole pixels; other pixels stay. Throws as Light().
+  /// Removes the light from an image in which the body covers whole pixels; other pixels stay. Throws as Light().
   void Unlight(const ShLighting& light, const ShadingLimits& limits, Image* image) const;
 
  private:

@@ -68,7 +68,7 @@ ShLighting EnvironmentLight(const Image& equirectangular, PixelEncoding encoding
   ShLighting radiance = ShLighting::Zero();
   for (int row = 0; row < height; ++row) {
     const double down = M_PI * (row + 0.5) / height;
-    // Exact solid angle of the row's pixels: their sum over the image is 4π whatever its size.
+    // Exact solid angle of the row's pixels: they sum to 4π for any image size.
     const double solid_angle = 2 * M_PI / width * (std::cos(M_PI * row / height) - std::cos(M_PI * (row + 1) / height));
     for (int column = 0; column < width; ++column) {
       const double right = 2 * M_PI * ((column + 0.5) / width - 0.5);

@@ -15,14 +15,14 @@ constexpr int kSamples = 3;  ///< a pixel along x and y
 }  // namespace
 
 void LayOver(const DrawnPerson& person, Image* image) {
-  BODYLOOM_CHECK(image->width == person.picture.width && image->height == person.picture.height,
-                 "drawn person: ", person.picture.width, "x", person.picture.height, " over ", image->width, "x",
+  BODYLOOM_CHECK(image->width == person.image.width && image->height == person.image.height,
+                 "drawn person: ", person.image.width, "x", person.image.height, " over ", image->width, "x",
                  image->height);
   for (size_t p = 0; p < person.coverage.size(); ++p) {
     const int under = 255 - person.coverage[p];
     if (under == 255) continue;
     for (size_t i = 3 * p; i < 3 * p + 3; ++i) {
-      image->bgr[i] = static_cast<uint8_t>(std::min(255, person.picture.bgr[i] + (image->bgr[i] * under + 127) / 255));
+      image->bgr[i] = static_cast<uint8_t>(std::min(255, person.image.bgr[i] + (image->bgr[i] * under + 127) / 255));
     }
   }
 }
@@ -42,12 +42,12 @@ void PersonPainter::Draw(const MatrixX3d& vertices_in_camera, const Camera& came
                          std::vector<uint8_t>* coverage) {
   const size_t pixels = static_cast<size_t>(camera.width) * camera.height;
   BODYLOOM_CHECK(coverage == nullptr || coverage->size() == pixels,
-                 "drawing a person: the coverage is of another size than the picture");
-  drawn_.picture = Image(camera.width, camera.height);
+                 "drawing a person: the coverage is of another size than the image");
+  drawn_.image = Image(camera.width, camera.height);
   drawn_.coverage.assign(pixels, 0);
-  painter_.Draw(*person_->body, vertices_in_camera, camera, options_, &drawn_.picture, &drawn_.coverage);
+  painter_.Draw(*person_->body, vertices_in_camera, camera, options_, &drawn_.image, &drawn_.coverage);
   surface_.Look(vertices_in_camera, camera);
-  surface_.Light(person_->light.coefficients, person_->light.limits, drawn_.coverage, &drawn_.picture);
+  surface_.Light(person_->light.coefficients, person_->light.limits, drawn_.coverage, &drawn_.image);
   LayOver(drawn_, image);
   if (coverage != nullptr) *coverage = drawn_.coverage;
 }
@@ -58,7 +58,7 @@ std::vector<uint8_t> BgraOf(const DrawnPerson& person) {
     if (person.coverage[p] == 0) continue;
     for (size_t c = 0; c < 3; ++c) {
       bgra[4 * p + c] =
-          static_cast<uint8_t>(std::min(255.0, std::round(255.0 * person.picture.bgr[3 * p + c] / person.coverage[p])));
+          static_cast<uint8_t>(std::min(255.0, std::round(255.0 * person.image.bgr[3 * p + c] / person.coverage[p])));
     }
     bgra[4 * p + 3] = person.coverage[p];
   }
@@ -78,7 +78,7 @@ std::vector<DrawnPerson> PersonFramePainter::Draw(std::span<const PersonPose> po
     drawn[i] = {Image(camera.width, camera.height),
                 std::vector<uint8_t>(static_cast<size_t>(camera.width) * camera.height, 0)};
     if (poses[i].vertices_in_camera.rows() == 0) return;
-    painters_[i]->Draw(poses[i].vertices_in_camera, camera, &drawn[i].picture, &drawn[i].coverage);
+    painters_[i]->Draw(poses[i].vertices_in_camera, camera, &drawn[i].image, &drawn[i].coverage);
   });
   return drawn;
 }

@@ -6,8 +6,8 @@
 
 namespace bodyloom {
 
-std::vector<uint8_t> PartsInPicture(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera,
-                                    int num_threads) {
+std::vector<uint8_t> PartsInImage(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera,
+                                  int num_threads) {
   VisibilityBuffer buffer;
   VisibilityOptions visibility;
   visibility.num_threads = num_threads;

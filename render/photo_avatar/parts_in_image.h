@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a picture shows of a body, part by part.
+/// Body parts visible in an image.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,8 @@
 
 namespace bodyloom {
 
-/// DensePose's parts 1 to 24 of the body, one a pixel of the camera's picture; 0 off it. `vertices_in_camera`: V×3,
-/// metres.
-std::vector<uint8_t> PartsInPicture(const BodyModel& body, const MatrixX3d& vertices_in_camera, const Camera& camera,
-                                    int num_threads);
+/// DensePose's parts 1 to 24, one per pixel of the camera's image; 0 off the body. `vertices_in_camera`: V×3, metres.
+std::vector<uint8_t> PartsInImage(const BodyModel& body, const MatrixX3d& vertices_in_camera, const Camera& camera,
+                                  int num_threads);
 
 }  // namespace bodyloom

@@ -29,15 +29,15 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kMarginOfHeight = 0.004;      ///< of the person's pixels: the mask's contour is blurred by so much
-constexpr double kStepMarginOfHeight = 0.012;  ///< where a limb hides another: a fit's median error
-constexpr double kLeakOfHeight = 0.06;         ///< so far beside the fitted arm skin before the trunk may be the arm's
-constexpr double kHemMargin_m = 0.12;          ///< below a hem, what is seen of the legs may be the hem
-constexpr double kLeastSeen = 0.01;            ///< of the body's texels, in every photo
+constexpr double kMarginOfHeight = 0.004;      ///< width of the blur at the mask's contour
+constexpr double kStepMarginOfHeight = 0.012;  ///< at occlusions between limbs: median error of a fit
+constexpr double kLeakOfHeight = 0.06;         ///< skin within this of the fitted arm may be the arm's
+constexpr double kHemMargin_m = 0.12;          ///< below a hem, leg pixels may show the hem
+constexpr double kMinSeen = 0.01;              ///< share of the body's texels that each photo must show
 
-constexpr int kLeftKnee = 4, kRightKnee = 5;  ///< SMPL's joints, which a body in a garment has
+constexpr int kLeftKnee = 4, kRightKnee = 5;  ///< SMPL's joints; a body with a garment has them
 
-/// In the order of TexelSource.
+/// Colours of TexelSource, in its order.
 constexpr std::array<Colour, 8> kSourceColours = {{{0, 0, 0},
                                                    {255, 255, 255},
                                                    {70, 110, 230},
@@ -47,7 +47,7 @@ constexpr std::array<Colour, 8> kSourceColours = {{{0, 0, 0},
                                                    {240, 140, 40},
                                                    {220, 40, 60}}};
 
-/// Pixels from the mask's first row to its last.
+/// Height of the mask's content, pixels.
 int MaskHeight(const LabelImage& mask) {
   int first = mask.height, last = -1;
   for (int y = 0; y < mask.height; ++y) {
@@ -65,8 +65,8 @@ int MarginPx(const LabelImage& mask, double of_height) {
 
 }  // namespace
 
-std::vector<uint8_t> MaskInPicture(const FittedPhoto& photo) {
-  return photo.mask.Over(photo.picture.width, photo.picture.height);
+std::vector<uint8_t> PhotoMask(const FittedPhoto& photo) {
+  return photo.mask.Over(photo.image.width, photo.image.height);
 }
 
 PhotoPersonBuilder::PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock,
@@ -80,7 +80,7 @@ void PhotoPersonBuilder::Begin(const char* stage) {
   if (clock_ != nullptr) clock_->Begin(stage);
 }
 
-/// The first photo decides what is worn.
+/// Fits the clothes of the photo; the garment is taken from the first photo.
 ClothesOffsets PhotoPersonBuilder::Dress(const FittedPhoto& photo) {
   const BodyModel& bare = *person_.bare;
   if (person_.tracks.empty()) {
@@ -88,8 +88,8 @@ ClothesOffsets PhotoPersonBuilder::Dress(const FittedPhoto& photo) {
     person_.cut = fitted.garment;
     person_.report.garment_length_m = fitted.garment.length_m;
     swing_rad_ = fitted.swing_rad;
-    person_.report.unlike_close = fitted.unlike_close;
-    person_.report.unlike_loose = fitted.unlike_loose;
+    person_.report.mask_error_tight = fitted.mask_error_tight;
+    person_.report.mask_error_with_garment = fitted.mask_error_with_garment;
     return std::move(fitted.offsets);
   }
   const MatrixX3d rest = ShapeVertices(bare, photo.track.motion.betas);
@@ -99,30 +99,30 @@ ClothesOffsets PhotoPersonBuilder::Dress(const FittedPhoto& photo) {
                            clothes_.offsets, covered);
 }
 
-/// The first photo's light becomes the person's.
+/// Removes the photo's light; the first photo's becomes the person's.
 Image PhotoPersonBuilder::InEvenLight(const FittedPhoto& photo, const MatrixX3d& vertices) {
-  Image picture = photo.picture;
-  if (photo.labels.empty()) return picture;
+  Image image = photo.image;
+  if (photo.labels.empty()) return image;
   LitSurface surface(*person_.body, !person_.garment.empty(), clothes_.num_threads);
   surface.Look(vertices, photo.track.CameraAt(0));
-  const PhotoLight light = LightOfPhoto(picture, photo.labels, surface);
+  const PhotoLight light = LightOfPhoto(image, photo.labels, surface);
   if (person_.tracks.empty()) person_.light.coefficients = GreyLight(light.coefficients);
-  surface.Unlight(GreyLight(light.coefficients), kPhotoShading, &picture);
-  return picture;
+  surface.Unlight(GreyLight(light.coefficients), kPhotoShading, &image);
+  return image;
 }
 
 std::vector<uint8_t> PhotoPersonBuilder::UsablePixels(const FittedPhoto& photo, const MatrixX3d& vertices) const {
-  std::vector<uint8_t> mask = MaskInPicture(photo);
+  std::vector<uint8_t> mask = PhotoMask(photo);
   if (photo.labels.empty()) return mask;
   const std::vector<uint8_t> parts =
-      PartsInPicture(*person_.body, vertices, photo.track.CameraAt(0), clothes_.num_threads);
-  return WithoutLimbLeaks(photo.picture, mask, photo.labels, parts, MarginPx(photo.mask, kLeakOfHeight));
+      PartsInImage(*person_.body, vertices, photo.track.CameraAt(0), clothes_.num_threads);
+  return WithoutLimbLeaks(photo.image, mask, photo.labels, parts, MarginPx(photo.mask, kLeakOfHeight));
 }
 
 void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   PhotoPersonReport::Photo report;
   report.image = photo.name, report.people = photo.people;
-  report.width = photo.picture.width, report.height = photo.picture.height;
+  report.width = photo.image.width, report.height = photo.image.height;
   Begin("clothes");
   const BodyModel& bare = *person_.bare;
   const Eigen::VectorXd betas = photo.track.motion.betas;
@@ -161,14 +161,14 @@ void PhotoPersonBuilder::Add(const FittedPhoto& photo) {
   const int seen =
       extractor_->Add(InEvenLight(photo, vertices), vertices, track.CameraAt(0), index, UsablePixels(photo, vertices));
   report.texels_seen = static_cast<double>(seen) / extractor_->table().num_inside;
-  if (report.texels_seen < kLeastSeen) {
-    if (index == 0) extractor_.reset();  // the next photo is the first
-    throw NothingToTrack(Concatenate(photo.name, ": shows too little of the person, expected one who is larger (",
-                                     MaskHeight(photo.mask), " px tall here) and turned to the camera"));
+  if (report.texels_seen < kMinSeen) {
+    if (index == 0) extractor_.reset();  // the next photo becomes the first
+    throw NoPersonFound(Concatenate(photo.name, ": shows too little of the person, expected one who is larger (",
+                                    MaskHeight(photo.mask), " px tall here) and turned to the camera"));
   }
   person_.report.photos.push_back(report);
   person_.tracks.push_back(photo.track);
-  if (!photo.labels.empty()) labels_.push_back({photo.picture.width, photo.picture.height, photo.labels});
+  if (!photo.labels.empty()) labels_.push_back({photo.image.width, photo.image.height, photo.labels});
 }
 
 PhotoPerson PhotoPersonBuilder::Finish() {
@@ -212,17 +212,17 @@ PhotoPerson PhotoPersonBuilder::Finish() {
   };
   person_.report.seen = share(TexelSource::kSeen);
   person_.report.mirrored = share(TexelSource::kMirror);
-  person_.report.behind = share(TexelSource::kBehind) + share(TexelSource::kAcross);
+  person_.report.behind = share(TexelSource::kBehind) + share(TexelSource::kMirroredBack);
   person_.report.hair = share(TexelSource::kHair);
-  person_.report.around = share(TexelSource::kAround);
-  person_.report.spread = share(TexelSource::kSpread);
+  person_.report.limb_neighbour = share(TexelSource::kLimbNeighbour);
+  person_.report.smooth_fill = share(TexelSource::kSmoothFill);
   extractor_.reset();
   return std::move(person_);
 }
 
 namespace {
 
-constexpr size_t kFewest = 50;  ///< pixels of a colour that is worth asking
+constexpr size_t kFewest = 50;  ///< pixels needed for a median colour
 
 bool IsTrunk(int part) { return part == 1 || part == 2; }
 bool IsThigh(int part) { return part >= 7 && part <= 10; }
@@ -240,13 +240,13 @@ float SquaredDistance(const ChannelTriple& a, const ChannelTriple& b) {
 
 }  // namespace
 
-std::vector<uint8_t> WithoutLimbLeaks(const Image& picture, std::span<const uint8_t> mask,
+std::vector<uint8_t> WithoutLimbLeaks(const Image& image, std::span<const uint8_t> mask,
                                       std::span<const uint8_t> labels, std::span<const uint8_t> parts, int reach_px) {
-  const size_t area = picture.bgr.size() / 3;
+  const size_t area = image.bgr.size() / 3;
   BODYLOOM_CHECK(mask.size() == area && labels.size() == area && parts.size() == area, "limb leaks: ", mask.size(),
-                 " pixels of the mask, ", labels.size(), " labels and ", parts.size(), " parts of a picture of ",
-                 picture.width, "x", picture.height);
-  cv::Mat off_arms(picture.height, picture.width, CV_8UC1), distance;
+                 " pixels of the mask, ", labels.size(), " labels and ", parts.size(), " parts of an image of ",
+                 image.width, "x", image.height);
+  cv::Mat off_arms(image.height, image.width, CV_8UC1), distance;
   for (size_t i = 0; i < area; ++i) off_arms.data[i] = IsArmOrHand(parts[i]) ? 0 : 255;
   cv::distanceTransform(off_arms, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   const auto near_arm = [&](size_t i) { return distance.ptr<float>()[i] <= static_cast<float>(reach_px); };
@@ -254,7 +254,7 @@ std::vector<uint8_t> WithoutLimbLeaks(const Image& picture, std::span<const uint
   std::vector<ChannelTriple> face_pixels, trunk_pixels, thigh_pixels;
   for (size_t i = 0; i < area; ++i) {
     if (mask[i] == 0) continue;
-    const ChannelTriple bgr = ColourOf(&picture.bgr[3 * i]);
+    const ChannelTriple bgr = ColourOf(&image.bgr[3 * i]);
     if (label(i) == PersonLabel::kFace) face_pixels.push_back(bgr);
     if (IsTrunk(parts[i]) && !near_arm(i)) trunk_pixels.push_back(bgr);
     if (IsThigh(parts[i]) && !near_arm(i)) thigh_pixels.push_back(bgr);
@@ -266,7 +266,7 @@ std::vector<uint8_t> WithoutLimbLeaks(const Image& picture, std::span<const uint
   for (size_t i = 0; i < area; ++i) {
     if (!(IsTrunk(parts[i]) || IsThigh(parts[i])) || !near_arm(i)) continue;
     const std::optional<ChannelTriple>& here = IsTrunk(parts[i]) ? trunk : thigh;
-    const ChannelTriple bgr = ColourOf(&picture.bgr[3 * i]);
+    const ChannelTriple bgr = ColourOf(&image.bgr[3 * i]);
     const bool like_skin = face && here && SquaredDistance(bgr, *face) < SquaredDistance(bgr, *here);
     if (like_skin || label(i) == PersonLabel::kSkin || label(i) == PersonLabel::kFace) kept[i] = 0;
   }
@@ -279,13 +279,13 @@ constexpr size_t kLightSamples = 5000;
 
 }  // namespace
 
-PhotoLight LightOfPhoto(const Image& picture, std::span<const uint8_t> labels, const LitSurface& surface) {
-  BODYLOOM_CHECK(3 * labels.size() == picture.bgr.size(), "light of a photo: ", labels.size(), " labels for ",
-                 picture.width, "x", picture.height, " pixels");
+PhotoLight LightOfPhoto(const Image& image, std::span<const uint8_t> labels, const LitSurface& surface) {
+  BODYLOOM_CHECK(3 * labels.size() == image.bgr.size(), "light of a photo: ", labels.size(), " labels for ",
+                 image.width, "x", image.height, " pixels");
   std::vector<int> person;
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const int at = y * picture.width + x;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const int at = y * image.width + x;
       if (labels[at] != 0 && surface.NormalAt(x, y) != nullptr) person.push_back(at);
     }
   }
@@ -294,10 +294,10 @@ PhotoLight LightOfPhoto(const Image& picture, std::span<const uint8_t> labels, c
   std::vector<double> light;
   std::vector<uint8_t> kinds;
   for (size_t k = 0; k < count; ++k) {
-    const int at = person[k * person.size() / count], x = at % picture.width, y = at / picture.width;
+    const int at = person[k * person.size() / count], x = at % image.width, y = at / image.width;
     const float* n = surface.NormalAt(x, y);
     normals.row(static_cast<Eigen::Index>(k)) << n[0], n[1], n[2];
-    const uint8_t* bgr = picture.pixel(x, y);
+    const uint8_t* bgr = image.pixel(x, y);
     light.push_back(LuminanceOf({DecodePixel(bgr[2] / 255.0, PixelEncoding::kSrgb),
                                  DecodePixel(bgr[1] / 255.0, PixelEncoding::kSrgb),
                                  DecodePixel(bgr[0] / 255.0, PixelEncoding::kSrgb)}));

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What fitted photos show of a person, as a clothed body and its whole texture.
+/// Builds a person, a clothed body and its complete texture, from fitted photos.
 ///
-/// Clothes and hair stand off as the mask says, and a skirt, dress or coat hangs as it says
-/// (render/garment/fit_clothes.h); the texels of the clothed body look
-/// their colours up in the picture, from which the light was taken (render/photo_avatar/photo_person_builder.h). Photos
-/// are merged texel by texel, the one that sees it best; the first gives shape and clothes. What no photo shows is
-/// guessed (render/texture/complete/whole_texture.h).
+/// Offsets of clothes and hair and a skirt, dress or coat are fitted to the mask (render/garment/fit_clothes.h). Texels
+/// of the clothed body sample the image after its light was removed (LightOfPhoto). Photos are merged by taking each
+/// texel from the one that sees it best; the first gives shape and clothes. Unseen texels are guessed
+/// (render/texture/complete/whole_texture.h).
 #pragma once
 
 #include <cstdint>
@@ -27,32 +26,32 @@
 
 namespace bodyloom {
 
-/// A photo, and where the person is in it.
+/// A photo with the person's fit and mask.
 struct FittedPhoto {
-  std::string name;  ///< of messages and the report
-  Image picture;
+  std::string name;  ///< for messages and the report
+  Image image;
   Track track;      ///< of one frame with a result, of the bare body
-  LabelImage mask;  ///< of the picture's size; 0 where the person is not
-  /// PersonLabel, one a pixel of the picture: dark clothes are not shade. Empty: nobody knows, and the light is taken
+  LabelImage mask;  ///< of the image's size; 0 where the person is not
+  /// PersonLabel, one per pixel of the image, to tell dark clothes from shade. Empty: not known, and the light is taken
   /// as even.
   std::vector<uint8_t> labels;
-  int people = 1;  ///< found in it
+  int people = 1;  ///< detected in it
 };
 
-/// The photo's mask, one a pixel of the picture.
-std::vector<uint8_t> MaskInPicture(const FittedPhoto& photo);
+/// The photo's mask, one value per pixel of the image.
+std::vector<uint8_t> PhotoMask(const FittedPhoto& photo);
 
 class PhotoPersonBuilder {
  public:
-  /// `bare` has UV coordinates. `clock`, where there is one, times the stages "clothes", "texture" and "complete"; it
-  /// must outlive this.
+  /// `bare` has UV coordinates. `clock` (may be null) times the stages "clothes", "texture" and "complete"; it must
+  /// outlive this.
   PhotoPersonBuilder(std::shared_ptr<const BodyModel> bare, int texture_size, StageClock* clock = nullptr,
                      const FitClothesOptions& clothes = {});
 
-  /// Throws NothingToTrack naming a photo that shows too little of the person, std::invalid_argument when sizes do not
-  /// fit; others may be added after it.
+  /// Throws NoPersonFound naming a photo that shows too little of the person, std::invalid_argument when sizes do not
+  /// fit; after either, further photos may be added.
   void Add(const FittedPhoto& photo);
-  /// The person, of at least one photo; this is spent.
+  /// Returns the person; needs at least one photo. The builder cannot be used afterwards.
   PhotoPerson Finish();
 
  private:
@@ -67,32 +66,31 @@ class PhotoPersonBuilder {
   PhotoPerson person_;
   double swing_rad_ = 0;  ///< of the garment in the first photo
   std::optional<TextureExtractor> extractor_;
-  std::vector<PhotoLabels> labels_;  ///< of each photo; without those of all of them nothing is said of texels
+  std::vector<PhotoLabels> labels_;  ///< of each photo; texels get labels only when all photos have them
 };
 
-// Pixels in which an arm lies before the trunk or the thighs, though the fitted body has it a little beside them.
+// Excludes pixels in which an arm occludes the trunk or the thighs although the fitted arm lies beside them.
 
-/// `mask` (one a pixel, 0 where the person is not) without the pixels in which the body shows trunk or thighs, an arm
-/// or a hand of the body is within `reach_px`, and the photo shows skin: its label is skin or face (`labels`,
-/// PersonLabel), or its colour is nearer to the face's median colour than to that of the trunk, or of the thighs, away
-/// from the arms. `parts`: DensePose's, of the body in the picture. Throws std::invalid_argument when sizes do not fit.
-std::vector<uint8_t> WithoutLimbLeaks(const Image& picture, std::span<const uint8_t> mask,
+/// `mask` (one per pixel, 0 off the person) without the pixels in which the body shows trunk or thighs, an arm or a
+/// hand of the body is within `reach_px`, and the photo shows skin: its label is skin or face (`labels`, PersonLabel),
+/// or its colour is nearer to the face's median colour than to that of the trunk, or of the thighs, away from the arms.
+/// `parts`: DensePose's, of the body in the image. Throws std::invalid_argument when sizes do not fit.
+std::vector<uint8_t> WithoutLimbLeaks(const Image& image, std::span<const uint8_t> mask,
                                       std::span<const uint8_t> labels, std::span<const uint8_t> parts, int reach_px);
 
-// The light in a photo of a person, from the photo itself (render/lighting/fit_lighting.h).
+// Estimates the light on a person from the photo itself (render/lighting/fit_lighting.h).
 
-/// One view shows half of all normals, among which 1, z and z² are much alike: what they leave open is even light.
+/// One view shows half of all normals, on which 1, z and z² are nearly collinear: the prior is even light.
 inline constexpr double kPhotoRidge = 0.1;
 struct PhotoLight {
-  /// Camera frame, one for all colours; its shading has the mean 1 over the person's pixels. Even light where it was
-  /// not found.
+  /// Camera frame, one for all colours; mean shading 1 over the person's pixels. Even light if the fit failed.
   ShVector coefficients = EvenLight();
-  FitLightingSummary fit;  ///< IsUsable(): it was found
+  FitLightingSummary fit;  ///< IsUsable(): the fit succeeded
 };
 
-/// The light on the person of `picture`, whose dressed body `surface` looks at. `labels`: PersonLabel, one a pixel of
-/// the picture, each of which has an albedo of its own; the person is where they are not 0. Throws
-/// std::invalid_argument when sizes differ.
-PhotoLight LightOfPhoto(const Image& picture, std::span<const uint8_t> labels, const LitSurface& surface);
+/// The light on the person in `image`; `surface` holds the normals of the dressed body (LitSurface::Look). `labels`:
+/// PersonLabel, one per pixel, 0 off the person; each label has its own albedo. Throws std::invalid_argument when sizes
+/// differ.
+PhotoLight LightOfPhoto(const Image& image, std::span<const uint8_t> labels, const LitSurface& surface);
 
 }  // namespace bodyloom

@@ -67,8 +67,8 @@ class Labelling {
       if (label > kBackground && label < kNumPersonLabels) ++votes[NearestCorner(i)][label];
     }
     for (size_t v = 0; v < votes.size(); ++v) {
-      const auto most = std::max_element(votes[v].begin(), votes[v].end());
-      if (*most > 0) of_vertex_[v] = static_cast<uint8_t>(most - votes[v].begin());
+      const auto maximum = std::max_element(votes[v].begin(), votes[v].end());
+      if (*maximum > 0) of_vertex_[v] = static_cast<uint8_t>(maximum - votes[v].begin());
     }
   }
 

@@ -26,7 +26,7 @@ void ClipAtPlane(const Vector4d& plane, ClippedPolygon* polygon) {
   *polygon = kept;
 }
 
-/// The four planes inside of which |x_px| and |y_px| stay below the guard band (less a pixel for rounding).
+/// The four planes that bound |x_px| and |y_px| by the guard band (less a pixel for rounding).
 std::array<Vector4d, 4> GuardPlanes(const Camera& camera, double guard_px) {
   const double limit = guard_px - 1;
   if (camera.model == CameraModel::kWeakPerspective) {
@@ -46,7 +46,7 @@ ClippedPolygon ClipTriangle(const std::array<Vector3d, 3>& corners, const Camera
   polygon.size = 3;
   for (int c = 0; c < 3; ++c) polygon.corners[c] = corners[c];
   if (camera.model == CameraModel::kPinhole) {
-    // A clipped corner must pass the test z >= near_m afterwards in spite of rounding.
+    // Clipped corners must satisfy z >= near_m despite rounding.
     ClipAtPlane(Vector4d(0, 0, 1, -near_m * (1 + 1e-9)), &polygon);
   }
   if (camera.HasDistortion()) return polygon;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Faces that reach behind the near plane or far outside the image are cut to what can be projected.
+/// Clips faces that reach behind the near plane or far outside the image, so that they can be projected.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,9 +15,9 @@ struct ClippedPolygon {
   int size = 0;
 };
 
-/// The part of a triangle (camera frame, metres) with z >= near_m (pinhole only) and |x_px|, |y_px| < guard_px; empty
-/// when nothing is left. Cut in space, before any division by depth. The two faces of a shared edge are cut at the same
-/// points. With lens distortion only the near plane cuts: edges are not straight there.
+/// The part of a triangle (camera frame, metres) with z >= near_m (pinhole only) and |x_px|, |y_px| < guard_px; may be
+/// empty. Clipped in space, before any division by depth. The two faces of a shared edge are clipped at the same
+/// points. With lens distortion only the near plane clips, because edges are not straight on the screen.
 ClippedPolygon ClipTriangle(const std::array<Eigen::Vector3d, 3>& corners, const Camera& camera, double near_m,
                             double guard_px);
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-// Instruction sets that add nothing to these loops, and those whose vectors have no size at compile time.
+// Instruction sets without benefit for these loops, and those whose vector size is not known at compile time.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/raster/raster_simd.cc"
@@ -24,7 +24,7 @@ using DF = hn::CappedTag<float, kLanes>;
 using VI = hn::Vec<DI>;
 using VF = hn::Vec<DF>;
 
-/// One register of vertices from x, y, z.
+/// Projects one register of vertices x, y, z.
 template <class D>
 HWY_INLINE void ProjectLanes(D d, const Projection& projection, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z, int first,
                              const ScreenArrays& screen, hn::Vec<hn::Rebind<int32_t, D>>* x_snapped,
@@ -71,7 +71,7 @@ void ProjectVertices(const Projection& projection, const double* vertices, int f
   double tail[3 * kLanes];
   for (int v = first; v < last; v += N) {
     const double* from = vertices + 3 * static_cast<int64_t>(v);
-    if (v + N > last) {  // the last vertex stands in for those that are missing
+    if (v + N > last) {  // missing lanes repeat the last vertex
       for (int i = 0; i < 3 * N; ++i) tail[i] = from[std::min(i / 3, last - v - 1) * 3 + i % 3];
       from = tail;
     }
@@ -124,7 +124,7 @@ void SetUpFaces(const int32_t* faces, int first, int last, const ScreenArrays& s
   for (int f = first; f < last; f += N) {
     const int32_t* from = faces + 3 * static_cast<int64_t>(f);
     const int count = std::min(N, last - f);
-    if (count < N) {  // corners of the last face stand in for those that are missing
+    if (count < N) {  // missing lanes repeat the last face
       for (int i = 0; i < 3 * N; ++i) tail[i] = from[std::min(i / 3, count - 1) * 3 + i % 3];
       from = tail;
     }
@@ -135,7 +135,7 @@ void SetUpFaces(const int32_t* faces, int first, int last, const ScreenArrays& s
     VI bx = hn::GatherIndex(d, screen_x, ib), by = hn::GatherIndex(d, screen_x + 1, ib);
     VI cx = hn::GatherIndex(d, screen_x, ic), cy = hn::GatherIndex(d, screen_x + 1, ic);
 
-    // Which faces are drawn here. Where a corner is unusable its coordinates mean nothing.
+    // Mask of the faces drawn here. Coordinates of unusable corners are undefined.
     const VI unusable = hn::Set(d, kUnusable);
     const auto broken = hn::Or(hn::Eq(ax, unusable), hn::Or(hn::Eq(bx, unusable), hn::Eq(cx, unusable)));
     const VI x_min = hn::Min(ax, hn::Min(bx, cx)), x_max = hn::Max(ax, hn::Max(bx, cx));
@@ -146,13 +146,13 @@ void SetUpFaces(const int32_t* faces, int first, int last, const ScreenArrays& s
     const VI x_end = hn::Min(hn::Sub(hn::ShiftRight<8>(x_max), hn::Set(d, box.x_begin - 1)), hn::Set(d, box.width));
     const VI y_end = hn::Min(hn::Sub(hn::ShiftRight<8>(y_max), hn::Set(d, box.y_begin - 1)), hn::Set(d, box.height));
     auto drawn = hn::And(hn::Lt(x_begin, x_end), hn::Lt(y_begin, y_end));
-    // Edge values must fit 31 bits up to 31 px beside the face, where vectors begin and end.
+    // Edge values must fit 31 bits up to 31 px beyond the face, as vectors are aligned.
     const VF reach_x = hn::ConvertTo(df, hn::Add(hn::Sub(x_max, x_min), hn::Set(d, 34 * kSubpixels)));
     const VF reach_y = hn::ConvertTo(df, hn::Add(hn::Sub(y_max, y_min), hn::Set(d, 2 * kSubpixels)));
     const auto fits = hn::RebindMask(d, hn::Lt(hn::Mul(reach_x, reach_y), hn::Set(df, 1.07e9F)));
 
     const VI ux = hn::Sub(bx, ax), uy = hn::Sub(by, ay), vx = hn::Sub(cx, ax), vy = hn::Sub(cy, ay);
-    VI area = hn::Sub(hn::Mul(ux, vy), hn::Mul(uy, vx));  // where it fits
+    VI area = hn::Sub(hn::Mul(ux, vy), hn::Mul(uy, vx));  // valid where it fits
     const auto is_front = hn::Lt(area, zero);             // y is down: counter-clockwise is negative
     auto faces_us = cull_back_faces ? is_front : hn::Ne(area, zero);
     const auto exists = hn::FirstN(d, count);
@@ -278,7 +278,7 @@ void DrawSmallFaces(const SmallFaces& faces, const int32_t* entries, int count, 
 
 int64_t FloorDivide(int64_t a, int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
-/// One row of a large face: columns x_begin..x_end−1 of the tile, edge values and nearness exact to the rounding.
+/// One row of a large face: columns x_begin..x_end−1 of the tile, edge values and nearness exact up to rounding.
 struct LargeRow {
   int64_t eb, ec;  ///< unbiased, at column 0
   int64_t step_b, step_c;

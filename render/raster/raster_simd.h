@@ -7,13 +7,13 @@
 ///
 /// Coverage. Corners are in 1/256 px. The edge function of p → q at a pixel centre, (q − p) × (pixel − p), is an
 /// integer, positive inside a face of positive area; `bias` is 1 for edges that do not own their pixels (top-left rule)
-/// and is taken off, so that a pixel is inside when no edge value is negative.
+/// and is subtracted, so that a pixel is inside when no edge value is negative.
 ///
 /// Nearness of a covered pixel, with e_b, e_c the biased edge values opposite to corners b and c:
 ///   slope_b = (n_b − n_a) / area,  slope_c = (n_c − n_a) / area
 ///   nearness = (n_a + (bias_b·slope_b + bias_c·slope_c)) + (e_b·slope_b + e_c·slope_c)
-/// A mean of the corners' values weighted by integers: it stays within their range, but for rounding, however thin the
-/// face. Small faces: every operation in float (integers rounded to it first). Large ones: in double, rounded once.
+/// This is a mean of the corners' values with integer weights, so it stays within their range up to rounding for any
+/// face. Small faces: every operation in float (integers are rounded to it first). Large ones: in double, rounded once.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@
 
 namespace bodyloom {
 
-/// A projected vertex, not rounded; lens distortion left out.
+/// A projected vertex, not rounded, without lens distortion.
 struct ProjectedVertex {
   double x_px, y_px;
   double nearness;  ///< 1/z, or −z for weak perspective; NaN: behind the near plane, outside the lens or guard band
-  double spare;     ///< makes it half a cache line
+  double spare;     ///< padding to half a cache line
 };
 
 }  // namespace bodyloom
@@ -37,7 +37,7 @@ inline constexpr int kSubpixels = 256;
 inline constexpr double kGuardBandPx =
     1 << 21;  ///< 2^29 subpixels: sums of two products of differences stay below 2^62
 inline constexpr int kTileWidth = 64, kTileHeight = 32;
-inline constexpr int kLanes = 16;  ///< the widest vector; arrays that kernels write end in as many spare entries
+inline constexpr int kLanes = 16;  ///< widest vector; arrays that kernels write are padded by as many entries
 
 /// pixel = scale · (X·w + offset) + centre with w = 1/Z (pinhole without distortion; offset 0) or w = 1 (weak).
 struct Projection {
@@ -51,35 +51,34 @@ inline constexpr int32_t kUnusable = INT32_MIN;  ///< x of a vertex behind the n
 struct ScreenVertex {
   int32_t x, y;    ///< rounded to 1/256 px
   float nearness;  ///< 1/z, or −z for weak perspective
-  int32_t spare;   ///< makes it one load
+  int32_t spare;   ///< padding to a single load
 };
 
-/// By vertex.
+/// Output arrays, indexed by vertex.
 struct ScreenArrays {
   ProjectedVertex* projected = nullptr;
   ScreenVertex* vertices = nullptr;
 };
 
-/// Over some vertices; empty at first.
+/// Bounds of a range of vertices; initially empty.
 struct ScreenExtent {
   int32_t x_min = INT32_MAX, x_max = INT32_MIN, y_min = INT32_MAX, y_max = INT32_MIN;  ///< of the usable ones
   bool all_usable = true, all_finite = true;
 };
 
-/// Projects vertices first..last−1 (V×3 row-major, camera frame, metres). Pixels of unusable vertices hold
-/// anything.
+/// Projects vertices first..last−1 (V×3 row-major, camera frame, metres). Pixels of unusable vertices are undefined.
 void ProjectVertices(const Projection& projection, const double* vertices, int first, int last,
                      const ScreenArrays& screen, ScreenExtent* extent);
 
-/// Whether all `count` values are in 0..bound−1.
+/// Returns true if all `count` values are in 0..bound−1.
 bool AllInRange(const int32_t* values, int64_t count, int32_t bound);
 
-/// The pixels that are drawn on; faces' pixels count from its corner.
+/// The pixels that are drawn; faces' pixels are relative to its corner.
 struct Box {
   int x_begin = 0, y_begin = 0, width = 0, height = 0;
 };
 
-/// Faces small enough for 32-bit edge functions, ready to be drawn, in rising order. One entry an array and face.
+/// Faces small enough for 32-bit edge functions, set up for drawing, ascending. Arrays have one entry per face.
 struct SmallFaces {
   std::vector<int32_t> integers;
   std::vector<float> reals;
@@ -93,15 +92,15 @@ struct SmallFaces {
   void Reserve(int num_faces);
 };
 
-/// Any other face, also pieces of clipped ones.
+/// Any other face, including pieces of clipped ones.
 struct LargeFace {
   ScreenVertex corners[3];
   int32_t face;
 };
 
-/// Of faces first..last−1 (F×3 row-major): culls what is turned away (when requested), has no area or meets no pixel
-/// centre of the box; appends the others to `small`, and to `others` the indices of those that are large or have an
-/// unusable corner.
+/// Sets up faces first..last−1 (F×3 row-major): culls those that face away (if requested), have no area or contain no
+/// pixel centre of the box; appends small ones to `small`, and to `others` the indices of those that are large or have
+/// an unusable corner.
 void SetUpFaces(const int32_t* faces, int first, int last, const ScreenArrays& screen, const Box& box,
                 bool cull_back_faces, SmallFaces* small, std::vector<int32_t>* others);
 
@@ -113,35 +112,35 @@ struct Tile {
 };
 
 void ClearTile(Tile* tile);
-/// Draws the named entries, whose faces must rise and be above none that was drawn with an equal nearness before.
+/// Draws the given entries, whose faces must ascend; a face drawn earlier at equal nearness must have a lower index.
 void DrawSmallFaces(const SmallFaces& faces, const int32_t* entries, int count, Tile* tile);
-/// In any order: at equal nearness the lower face wins.
+/// Draws the given faces in any order: at equal nearness the lower index wins.
 void DrawLargeFaces(const LargeFace* faces, const int32_t* entries, int count, const Box& box, bool cull_back_faces,
                     Tile* tile);
 
-/// The instruction sets of this build that this machine has, best first.
+/// Instruction sets of this build that this machine supports, best first.
 std::vector<int64_t> SimdTargets();
 std::string SimdTargetName(int64_t target);
 /// Name of the one in use.
 std::string ChosenSimdTarget();
-/// For tests: from now on the process uses only this one; 0 ends that. Not to be called while something is drawn.
+/// For tests: restricts the process to one instruction set; 0 lifts the restriction. Must not be called while drawing.
 void ForceSimdTarget(int64_t target);
 
 }  // namespace bodyloom::raster_internal
 
 namespace bodyloom {
 
-// The covered span of a row of a visibility buffer: most of a person's box is background, which is passed over eight
+// Finds the covered span of a row of a visibility buffer: most of a person's box is background, which is skipped eight
 // pixels at a time.
 
-/// Whether none of eight pixels sees a face.
+/// Returns true if none of eight pixels sees a face.
 inline bool SeeNothing(const int32_t* eight_faces) {
   int32_t all = eight_faces[0];
   for (int i = 1; i < 8; ++i) all &= eight_faces[i];  // −1 has every bit
   return all == -1;
 }
 
-/// Columns [begin, end) outside of which the row sees nothing; both 0 when it sees nothing at all.
+/// Columns [begin, end) outside of which the row is background; both 0 for an empty row.
 struct CoveredSpan {
   int begin = 0, end = 0;
 };

@@ -116,7 +116,7 @@ class Resolver {
   }
 
  private:
-  /// Background to the row that begins at pixel `to`.
+  /// Writes background to the row that begins at pixel `to`.
   void ClearRow(size_t to) const {
     const size_t width = buffer_.box().width();
     const auto clear = [&](std::vector<float>* values, size_t channels) {
@@ -141,7 +141,7 @@ class Resolver {
     for (int i = 0; i < points.size; ++i) fill(i, row + channels * points.column[i]);
   }
 
-  /// Values (channels a row) of three rows, weighted.
+  /// Weighted sum of three rows of `channels` values.
   template <int channels>
   static void Mix(const float* values, const int* rows, const Barycentrics& weights, float* to) {
     const float *a = values + channels * size_t(rows[0]), *b = values + channels * size_t(rows[1]),
@@ -216,7 +216,7 @@ void CheckRequest(const BodyModel& body, const MatrixX3d& vertices, const Resolv
   }
 }
 
-/// Empty when not requested. Rows are cleared when they are written, while they are in the cache.
+/// Empty when not requested. Rows are cleared when written, while in the cache.
 template <class T>
 void Prepare(bool requested, size_t size, std::vector<T>* values) {
   values->resize(requested ? size : 0);

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Attributes of the visible surface, pixel by pixel, and only those that were requested: part, chart and atlas
-/// coordinates (together with the part: IUV), depth, normal, barycentrics, any attribute given by vertex or by texel of
-/// a UV map.
+/// Computes requested attributes of the visible surface per pixel: part, chart and atlas coordinates (together with the
+/// part: IUV), depth, normal, barycentrics, and any attribute given per vertex or per texel of a UV map.
 ///
 /// The surface point of a pixel is where the ray through its centre meets the plane of the face that the visibility
 /// buffer found, from the unrounded vertices: with λ the barycentrics of the pixel in the projected face,
 ///   b_c = max(λ_c, 0)·w_c / Σ max(λ, 0)·w,   w = 1/z of the corner (pinhole) or 1 (weak perspective),
-/// perspective correct and free of the 1/256 px rounding that decided which face it is; the rounding may leave a pixel
-/// outside its face by less than itself, hence the clamp. Distorted lenses: λ is taken between undistorted positions.
-/// In float relative to the face's first corner: b agrees with render/raster/visible_points.h (double) to 1e-5. Faces
-/// clipped at the near plane and faces seen edge-on take that path.
+/// perspective correct and free of the 1/256 px rounding used for visibility; because of that rounding a pixel may lie
+/// slightly outside its face, hence the clamp. Distorted lenses: λ is computed from undistorted positions. In float
+/// relative to the face's first corner: b agrees with render/raster/visible_points.h (double) to 1e-5. Faces clipped at
+/// the near plane and faces seen edge-on use that function.
 ///
-/// A value is interpolated inside one face and never across faces, so never across charts or seams.
+/// Values are interpolated within a face only, hence never across charts or seams.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +24,7 @@
 
 namespace bodyloom {
 
-/// `channels` values a vertex, V × channels.
+/// `channels` values per vertex, V × channels.
 struct VertexAttribute {
   std::span<const float> values;
   int channels = 1;
@@ -46,8 +45,8 @@ struct ResolveRequest {
   bool depth = false;        ///< z, metres
   bool normal = false;       ///< unit, outwards, interpolated from vertex normals; zero where they cancel
   bool barycentric = false;  ///< of the face's corners, each in [0, 1], sums to 1
-  /// Turns normals of the camera frame into the wanted one: identity; world_from_camera; body_from_camera = transpose
-  /// of the root's rotation in the camera frame.
+  /// Rotates normals from the camera frame to the requested one: identity; world_from_camera; body_from_camera =
+  /// transpose of the root's rotation in the camera frame.
   Eigen::Matrix3d normal_frame_from_camera = Eigen::Matrix3d::Identity();
   const MatrixX3f* vertex_normals = nullptr;  ///< V×3, camera frame; null: area-weighted ones are computed
   std::vector<VertexAttribute> vertex_attributes = {};
@@ -55,24 +54,24 @@ struct ResolveRequest {
   int num_threads = 1;
 };
 
-/// Row-major over the buffer's box, channels interleaved. Background: part 0, all else 0 but depth +infinity. What was
-/// not requested is empty.
+/// Row-major over the buffer's box, channels interleaved. Background: part 0, all else 0 but depth +infinity.
+/// Attributes not requested are empty.
 struct ResolvedPixels {
   PixelBox box;
   std::vector<uint8_t> part;
-  std::vector<float> chart_uv, atlas_uv;  ///< 2 a pixel
+  std::vector<float> chart_uv, atlas_uv;  ///< 2 per pixel
   std::vector<float> depth_m;
-  std::vector<float> normal, barycentric;                               ///< 3 a pixel
-  std::vector<std::vector<float>> vertex_attributes, texel_attributes;  ///< as many channels as were given
+  std::vector<float> normal, barycentric;                               ///< 3 per pixel
+  std::vector<std::vector<float>> vertex_attributes, texel_attributes;  ///< as many channels as given
 };
 
 /// Resolves every pixel of the buffer's box; the same bytes for any number of threads. `vertices_in_camera`, the body's
-/// faces and `camera` must be those that were rendered. Memory of `result` is used again. Throws std::invalid_argument
-/// when something is requested from a body that lacks it, or an attribute's size does not fit.
+/// faces and `camera` must be those that were rendered. Memory of `result` is reused. Throws std::invalid_argument when
+/// the body lacks a requested attribute, or an attribute's size does not fit.
 void ResolvePixels(const VisibilityBuffer& buffer, const BodyModel& body, const MatrixX3d& vertices_in_camera,
                    const Camera& camera, const ResolveRequest& request, ResolvedPixels* result);
 
-/// A texel attribute at (u, v): `channels` values to `to`.
+/// Samples a texel attribute at (u, v): writes `channels` values to `to`.
 void SampleTexels(const TexelAttribute& map, float u, float v, float* to);
 
 }  // namespace bodyloom

@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace bodyloom::resolve_internal::HWY_NAMESPACE {
 
-/// Values of corners a, b, c and 0: loops over all four become one instruction.
+/// Values of corners a, b, c and padding: loops over all four become one instruction.
 using Four = float[4];
 
 /// λ = constant + ex·by_x + ey·by_y at (ex, ey) pixels from the first corner.

@@ -13,7 +13,7 @@ namespace bodyloom::resolve_internal {
 
 /// Columns begin..end−1 of a row of a visibility buffer without lens distortion.
 struct BufferRow {
-  const int32_t* ids = nullptr;  ///< face by column, −1: none
+  const int32_t* ids = nullptr;  ///< face per column, −1: none
   int begin = 0, end = 0;
   int x_px = 0, y_px = 0;          ///< pixel of column 0
   const int32_t* faces = nullptr;  ///< F×3
@@ -21,11 +21,11 @@ struct BufferRow {
   bool is_weak = false;  ///< weak perspective: barycentrics are linear on the screen
 };
 
-/// Three barycentrics, and 1 where they hold; 0 where the face is seen edge-on, does not project whole, or lies far
-/// beside the pixel, where float cannot decide.
+/// Three barycentrics, and 1 if they are valid; 0 if the face is seen edge-on, has unprojectable corners, or lies too
+/// far from the pixel for float.
 using Barycentrics = std::array<float, 4>;
 
-/// Appends the covered pixels to arrays with room for end − begin; how many there are.
+/// Writes the covered pixels to arrays of capacity end − begin. Returns their number.
 int FindPoints(const BufferRow& row, int32_t* column, int32_t* face, Barycentrics* barycentrics);
 
 }  // namespace bodyloom::resolve_internal

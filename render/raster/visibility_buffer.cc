@@ -29,7 +29,7 @@ using raster_internal::ScreenVertex;
 
 constexpr int kVerticesAChunk = 1024;  // a multiple of every vector's length
 
-/// Large meshes get longer chunks: each chunk keeps a table as long as the picture has tiles.
+/// Large meshes get longer chunks: each chunk keeps a table as long as the image has tiles.
 int FacesAChunk(int num_faces) { return std::max(2048, (num_faces + 15) / 16); }
 
 int DivideUp(int a, int b) { return (a + b - 1) / b; }
@@ -54,7 +54,7 @@ PixelBox PixelsOf(const ScreenExtent& extent) {
 }
 
 /// Counting sort of items 0..count−1 by the tiles that their pixels (PixelBox of an item, not empty) meet; within a
-/// tile items rise.
+/// tile items ascend.
 template <class BoxOf>
 void SortByTile(int count, int tiles_across, int num_tiles, const BoxOf& box_of, std::vector<int32_t>* begin,
                 std::vector<int32_t>* entries) {
@@ -67,7 +67,7 @@ void SortByTile(int count, int tiles_across, int num_tiles, const BoxOf& box_of,
     }
   };
   begin->assign(static_cast<size_t>(num_tiles) + 2, 0);
-  int32_t* const end = begin->data() + 1;  // of each tile's entries, once they are all placed
+  int32_t* const end = begin->data() + 1;  // end of each tile's entries, once all are placed
   for (int i = 0; i < count; ++i) for_tiles(i, [&](unsigned tile) { ++end[tile + 1]; });
   for (int t = 0; t < num_tiles; ++t) end[t + 1] += end[t];
   entries->resize(end[num_tiles]);
@@ -77,7 +77,7 @@ void SortByTile(int count, int tiles_across, int num_tiles, const BoxOf& box_of,
 
 }  // namespace
 
-/// Faces of one stretch of indices, sorted by the tiles they meet.
+/// Faces of one range of indices, sorted by the tiles they meet.
 struct VisibilityBuffer::Chunk {
   int first = 0, last = 0;
   raster_internal::SmallFaces small;
@@ -86,7 +86,7 @@ struct VisibilityBuffer::Chunk {
   std::vector<int32_t> small_begin, small_entries, large_begin, large_entries;  ///< by tile
 };
 
-/// What is drawn, on the screen.
+/// Data of the faces being drawn, in screen coordinates.
 struct VisibilityBuffer::Drawing {
   std::vector<ScreenVertex> vertices;
   raster_internal::ScreenArrays screen;

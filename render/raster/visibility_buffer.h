@@ -40,7 +40,7 @@ struct VisibilityOptions {
   bool cull_back_faces = true;  ///< faces are counter-clockwise seen from outside
   double near_m = 0.01;         ///< pinhole: nothing nearer than this is seen; at least Camera::kMinDepth
   int num_threads = 1;          ///< at least 1
-  bool whole_image = false;     ///< visit every pixel of the image instead of the mesh's box: same picture, more time
+  bool whole_image = false;     ///< visit every pixel of the image instead of the mesh's box: same result, slower
 };
 
 /// Keeps its memory between frames. Not for use by two threads at once.

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// A line of sight: origin + t · direction.
+/// Viewing ray: origin + t · direction.
 struct Ray {
   Vector3d origin, direction;
 };
@@ -26,7 +26,7 @@ Ray RayOfPixel(const Camera& camera, const Vector2d& pixel) {
 }
 
 /// Signed volumes of the ray with the three edges: b_c ∝ direction · (corner_{c+1} × corner_{c+2}), corners relative to
-/// the ray's origin. All three have the sign of the face's orientation where the ray passes inside.
+/// the ray's origin. All three have the sign of the face's orientation if the ray passes inside.
 Vector3d BarycentricOnRay(const MatrixX3d& vertices, const MatrixX3i& faces, int face, const Ray& ray) {
   std::array<Vector3d, 3> corner;
   for (int c = 0; c < 3; ++c) corner[c] = vertices.row(faces(face, c)).transpose() - ray.origin;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Visible points of the body, one a covered pixel: the point on the surface and, on request, its part and chart
+/// Visible points of the body, one per covered pixel: the point on the surface and, on request, its part and chart
 /// coordinates.
 ///
 /// The point is where the ray through the pixel's centre meets the plane of the face that the visibility buffer found,
 /// computed in double from the unrounded vertices: perspective correct, exact for distorted lenses too, and free of the
-/// 1/256 px rounding that decided which face it is. Barycentrics that this rounding leaves outside the face (by less
-/// than the rounding) are clamped to it.
+/// 1/256 px rounding used for visibility. Barycentrics that this rounding leaves outside the face (by less than the
+/// rounding) are clamped to it.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,14 +18,14 @@
 
 namespace bodyloom {
 
-/// What to compute besides face and barycentrics.
+/// Attributes to compute besides face and barycentrics.
 struct VisiblePointsRequest {
   bool part = false;      ///< chart id 1..24, 0 where the face has none
   bool chart_uv = false;  ///< (u, v) inside the face's chart
   bool depth = false;     ///< z, metres
 };
 
-/// One entry a covered pixel, rows from top to bottom, pixels from left to right. Arrays not requested are empty.
+/// One entry per covered pixel, rows from top to bottom, pixels from left to right. Arrays not requested are empty.
 struct VisiblePoints {
   std::vector<int> x, y;  ///< pixel
   std::vector<int> face;
@@ -36,8 +36,8 @@ struct VisiblePoints {
   [[nodiscard]] size_t size() const { return face.size(); }
 };
 
-/// The surface point that `face` shows at `pixel`: barycentrics clamped to the face. The plane of a face seen edge-on
-/// meets the ray nowhere stable; its nearest corner is returned then.
+/// The surface point that `face` shows at `pixel`: barycentrics clamped to the face. For a face seen edge-on, where the
+/// intersection is ill-conditioned, its nearest corner is returned.
 Eigen::Vector3d BarycentricAtPixel(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Camera& camera,
                                    int face, const Eigen::Vector2d& pixel);
 

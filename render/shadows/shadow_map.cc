@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 
 constexpr double kUnitTolerance = 1e-5;  ///< of lights in float
 constexpr int kBorderPx = 2;
-constexpr double kHiddenByPixels = 2;  ///< a face that the light grazes is this much deeper at the next pixel but one
-constexpr int kSoftnessPoints = 4;     ///< a side
+constexpr double kHiddenByPixels = 2;  ///< depth change of a face at grazing light over two pixels
+constexpr int kSoftnessPoints = 4;     ///< per side
 
 }  // namespace
 
@@ -67,11 +67,11 @@ constexpr double kLift_m = 0.02;
 
 }  // namespace
 
-const std::vector<float>& OpennessOfMesh::Compute(const MatrixX3d& vertices, const MatrixX3f& normals,
-                                                  const MatrixX3i& faces) {
+const std::vector<float>& AmbientOcclusion::Compute(const MatrixX3d& vertices, const MatrixX3f& normals,
+                                                    const MatrixX3i& faces) {
   BODYLOOM_CHECK(normals.rows() == vertices.rows(), "openness: ", normals.rows(), " normals for ", vertices.rows(),
                  " vertices");
-  openness_.assign(vertices.rows(), 0);
+  ambient_occlusion_.assign(vertices.rows(), 0);
   whole_.assign(vertices.rows(), 0);
   static const DirectionBins directions(kDirections);
   for (int k = 0; k < kDirections; ++k) {
@@ -82,11 +82,13 @@ const std::vector<float>& OpennessOfMesh::Compute(const MatrixX3d& vertices, con
       const double share = normal.dot(towards);
       if (!(share > 0)) continue;
       whole_[v] += static_cast<float>(share);
-      if (map_.Reaches(vertices.row(v).transpose() + kLift_m * normal)) openness_[v] += static_cast<float>(share);
+      if (map_.Reaches(vertices.row(v).transpose() + kLift_m * normal))
+        ambient_occlusion_[v] += static_cast<float>(share);
     }
   }
-  for (size_t v = 0; v < openness_.size(); ++v) openness_[v] = whole_[v] > 0 ? openness_[v] / whole_[v] : 1;
-  return openness_;
+  for (size_t v = 0; v < ambient_occlusion_.size(); ++v)
+    ambient_occlusion_[v] = whole_[v] > 0 ? ambient_occlusion_[v] / whole_[v] : 1;
+  return ambient_occlusion_;
 }
 
 }  // namespace bodyloom

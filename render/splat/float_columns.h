@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A table of floats stored column after column, as SIMD loops want it, that keeps its memory.
+/// A column-major table of floats for SIMD loops that reuses its memory.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 
 namespace bodyloom {
 
-/// Columns begin at a cache line and end in spare rows up to a multiple of kLanes, which kernels may read and write.
+/// Columns are aligned to cache lines and padded with spare rows to a multiple of kLanes, which kernels may access.
 class FloatColumns {
  public:
-  static constexpr int kLanes = 16;  ///< rows that a kernel may take at once
+  static constexpr int kLanes = 16;  ///< rows that a kernel may process at once
 
   FloatColumns() = default;
   FloatColumns(int num_columns, int num_rows) { Resize(num_columns, num_rows); }
@@ -27,11 +27,11 @@ class FloatColumns {
   }
   ~FloatColumns() = default;
 
-  /// Makes room; memory is taken only when there is too little, and then all values are zero. Otherwise they stay as
-  /// they lie, which is in place only when the sizes are those of before.
+  /// Resizes the table. All values are zero when memory is allocated. Otherwise memory is not touched, so values keep
+  /// their places only if the sizes are unchanged.
   void Resize(int num_columns, int num_rows) {
     columns_ = num_columns, rows_ = num_rows;
-    // An odd number of cache lines: with a power of two all columns would share one set of the cache.
+    // An odd number of cache lines: with a power of two all columns would map to one cache set.
     const size_t lines = (static_cast<size_t>(num_rows) + kLanes - 1) / kLanes;
     stride_ = (lines | 1) * kLanes;
     const size_t size = stride_ * num_columns;
@@ -46,7 +46,7 @@ class FloatColumns {
 
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int columns() const { return columns_; }
-  /// Floats from one column to the next.
+  /// Distance between columns, in floats.
   [[nodiscard]] size_t stride() const { return stride_; }
   [[nodiscard]] float* data() { return values_.get(); }
   [[nodiscard]] const float* data() const { return values_.get(); }

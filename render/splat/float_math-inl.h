@@ -13,7 +13,7 @@ namespace bodyloom::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// 2^f of f in [−½, ½], times 2^n of the whole number that `shifted` − 1.5·2²³ is: error 2e-7 relative.
+/// 2^f · 2^n for f in [−½, ½] and the integer n = `shifted` − 1.5·2²³; relative error 2e-7.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V PowerOfTwo(D d, V f, V shifted) {
   const hn::Rebind<int32_t, D> di;
@@ -27,15 +27,15 @@ HWY_INLINE V PowerOfTwo(D d, V f, V shifted) {
   return hn::BitCast(d, hn::Add(hn::BitCast(di, p), hn::ShiftLeft<23>(hn::BitCast(di, shifted))));
 }
 
-/// 2^t of −120 < t < 120; anything else gives any bits.
+/// 2^t for −120 < t < 120; undefined bits elsewhere.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Exp2(D d, V t) {
-  const V magic = hn::Set(d, 12582912.0F);  // rounds to a whole number, which then is the lowest bits
+  const V magic = hn::Set(d, 12582912.0F);  // rounds to an integer, held in the lowest bits
   const V shifted = hn::Add(t, magic);
   return PowerOfTwo(d, hn::Sub(t, hn::Sub(shifted, magic)), shifted);
 }
 
-/// e^x, error 3e-7 relative; x is cut to [−80, 80] first, NaN stays NaN.
+/// e^x, relative error 3e-7; x is clamped to [−80, 80] first, NaN stays NaN.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Exp(D d, V x) {
   x = hn::IfThenElse(hn::Lt(x, hn::Set(d, -80.0F)), hn::Set(d, -80.0F), x);
@@ -49,11 +49,11 @@ HWY_INLINE V Exp(D d, V x) {
   return hn::Add(PowerOfTwo(d, hn::Mul(rest, hn::Set(d, 1.44269504F)), shifted), hn::Sub(x, x));
 }
 
-/// log2 of a normal positive float, error 2e-7 absolute near 1 and relative elsewhere; anything else gives any bits.
+/// log2 of a normal positive float, error 2e-7, absolute near 1 and relative elsewhere; undefined bits otherwise.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Log2(D d, V x) {
   const hn::Rebind<int32_t, D> di;
-  // x = 2^n m with m in [√½, √2): the bits of √½ are taken off, so that the exponent counts from there.
+  // x = 2^n m with m in [√½, √2): subtracting the bits of √½ makes the exponent field n.
   const auto offset = hn::Sub(hn::BitCast(di, x), hn::Set(di, 0x3f3504f3));
   const V n = hn::ConvertTo(d, hn::ShiftRight<23>(offset));
   const auto mantissa = hn::Add(hn::And(offset, hn::Set(di, 0x007fffff)), hn::Set(di, 0x3f3504f3));

@@ -20,7 +20,7 @@ ScreenProjection ScreenProjectionOf(const Camera& camera, const ProjectGaussians
   BODYLOOM_CHECK(options.IsValid(&why), "projection of Gaussians: ", why);
   const bool is_pinhole = camera.model == CameraModel::kPinhole;
   BODYLOOM_CHECK(!is_pinhole || !camera.HasDistortion(),
-                 "projection of Gaussians: the camera has lens distortion, expected none (undistort the picture)");
+                 "projection of Gaussians: the camera has lens distortion, expected none (undistort the image)");
   ScreenProjection p;
   p.divide_by_depth = is_pinhole;
   p.near_m = options.near_m;

@@ -69,12 +69,12 @@ void ProjectRows(const ScreenProjection& projection, ConstTable camera, int firs
     }
     MF ok = hn::Eq(nothing, zero);
     const VF opacity = in[Camera::kOpacity];
-    ok = hn::And(ok, hn::And(hn::Ge(opacity, hn::Set(d, Screen::kLeastAlpha)), hn::Le(opacity, one)));
+    ok = hn::And(ok, hn::And(hn::Ge(opacity, hn::Set(d, Screen::kMinAlpha)), hn::Le(opacity, one)));
     const VF z = in[Camera::kZ];
     if (projection.divide_by_depth) ok = hn::And(ok, hn::Ge(z, hn::Set(d, projection.near_m)));
-    const VF most =
+    const VF maximum =
         hn::Max(hn::Max(hn::Abs(in[Camera::kRed]), hn::Abs(in[Camera::kGreen])), hn::Abs(in[Camera::kBlue]));
-    ok = hn::And(ok, hn::Le(most, hn::Set(d, Screen::kLargestColour)));
+    ok = hn::And(ok, hn::Le(maximum, hn::Set(d, Screen::kLargestColour)));
 
     const VF x = in[Camera::kX], y = in[Camera::kY];
     const Footprint p = FootprintOf(projection, x, y, hn::IfThenElse(ok, z, one), in + Camera::kFactor);
@@ -85,14 +85,14 @@ void ProjectRows(const ScreenProjection& projection, ConstTable camera, int firs
         hn::Add(hn::Mul(hn::Set(d, projection.focal_y), divides ? p.v : y), hn::Set(d, projection.centre_y));
     const VF xx = Dot(p.b1, p.b1), xy = Dot(p.b1, p.b2), yy = Dot(p.b2, p.b2);
     const VF sxx = hn::Add(xx, low_pass), syy = hn::Add(yy, low_pass);
-    // |B Bᵀ + l I| = |b1 × b2|² + l (|b1|² + |b2|²) + l²: no difference, so thin ones keep their digits.
+    // |B Bᵀ + l I| = |b1 × b2|² + l (|b1|² + |b2|²) + l²: no cancellation for thin Gaussians.
     const Vec3 normal = Cross(p.b1, p.b2);
     const VF det = hn::Add(Dot(normal, normal), hn::Mul(low_pass, hn::Add(hn::Add(xx, yy), low_pass)));
     ok = hn::And(ok,
                  hn::And(hn::Ge(det, hn::Set(d, 1e-12F)), hn::Ge(det, hn::Mul(hn::Set(d, 1e-7F), hn::Mul(sxx, syy)))));
     const VF scale = hn::Div(one, hn::IfThenElse(ok, det, one));
     const VF log2_opacity = Log2(d, hn::IfThenElse(ok, opacity, one));
-    // q ≤ 2 ln(255 o) within; a little more, so that no rounding can leave out a pixel that reaches 1/255.
+    // q ≤ 2 ln(255 o), with a margin so that rounding excludes no pixel that reaches 1/255.
     const VF reach = hn::Mul(hn::Set(d, 1.38629436F), hn::Max(zero, hn::Add(log2_opacity, hn::Set(d, 7.99435344F))));
     const auto half = [&](VF s) HWY_ATTR {
       return hn::Add(hn::Mul(hn::Sqrt(hn::Mul(reach, s)), hn::Set(d, 1.0001F)), hn::Set(d, 0.01F));
@@ -140,7 +140,7 @@ void ProjectRowsBackward(const ScreenProjection& projection, ConstTable camera, 
     const VF z = hn::IfThenElse(drawn, of_camera(Camera::kZ), one);
     const Footprint p = FootprintOf(projection, x, y, z, f);
 
-    // By the covariance: S = −K G K, with G the derivative by K as a symmetric matrix.
+    // Derivative by the covariance: S = −K G K, with G that by K as a symmetric matrix.
     const VF kxx = of_screen(Screen::kConicXx), kxy = of_screen(Screen::kConicXy), kyy = of_screen(Screen::kConicYy);
     const VF gxx = given(Screen::kConicXx), gxy = hn::Mul(half, given(Screen::kConicXy)), gyy = given(Screen::kConicYy);
     const auto pair = [](VF a, VF b, VF e, VF g) HWY_ATTR { return hn::Add(hn::Mul(a, b), hn::Mul(e, g)); };
@@ -156,7 +156,7 @@ void ProjectRowsBackward(const ScreenProjection& projection, ConstTable camera, 
     VF by_x = mean_x, by_y = mean_y, by_z = zero;
     if (projection.divide_by_depth) {
       by_f2 = hn::Neg(p.u) * by_f0 - p.v * by_f1;
-      // The place enters through the mean and through J.
+      // The position enters through the mean and through J.
       const VF by_u = hn::Sub(mean_x, Dot(by_f0, p.along)), by_v = hn::Sub(mean_y, Dot(by_f1, p.along));
       const VF by_w = hn::Add(hn::Mul(focal_x, Dot(by_b1, p.across)), hn::Mul(focal_y, Dot(by_b2, p.down)));
       by_x = hn::Mul(by_u, p.w), by_y = hn::Mul(by_v, p.w);

@@ -20,32 +20,32 @@ using splat_internal::SplatTileBack;
 using splat_internal::SplatTiles;
 
 constexpr int kRowsASum = 1024;
-constexpr int kRowsAhead = 8;  // fetched ahead: neighbours' slots lie far apart
+constexpr int kRowsAhead = 8;  // prefetch distance: slots of neighbouring rows lie far apart
 
 }  // namespace
 
-void SplatGradient::GoThroughTile(const SplatPicture& picture, const FloatColumns& by_planes, int index) {
-  const SplatTiles& tiles = picture.tiles();
+void SplatGradient::GoThroughTile(const SplatImage& image, const FloatColumns& by_planes, int index) {
+  const SplatTiles& tiles = image.tiles();
   const PixelBox box = tiles.BoxOf(index), pixels = tiles.PixelsOf(index);
-  const PixelBox& window = picture.window();
+  const PixelBox& window = image.window();
   SplatTileBack tile;
   tile.x = box.x_begin, tile.y = box.y_begin;
-  tile.stop = picture.options().stop_transmittance;
+  tile.stop = image.options().stop_transmittance;
   std::fill_n(tile.transmittance, kTilePixels, 1.0F);
   // Pixels outside the window: derivatives of zero.
   const int left = pixels.x_begin - box.x_begin;
-  float by[SplatPicture::kNumPlanes][kTileSize] = {}, seen[SplatPicture::kNumPlanes][kTileSize] = {}, rest[kTileSize];
+  float by[SplatImage::kNumPlanes][kTileSize] = {}, seen[SplatImage::kNumPlanes][kTileSize] = {}, rest[kTileSize];
   for (int y = 0; y < kTileSize; ++y) {
     const bool is_inside = y + box.y_begin >= pixels.y_begin && y + box.y_begin < pixels.y_end;
     const size_t from = is_inside ? window.IndexOf(pixels.x_begin, y + box.y_begin) : 0;
-    for (int p = 0; p < SplatPicture::kNumPlanes; ++p) {
+    for (int p = 0; p < SplatImage::kNumPlanes; ++p) {
       if (is_inside) {
         splat_internal::CopyPixels(by_planes.column(p) + from, pixels.width(), by[p] + left);
-        splat_internal::CopyPixels(picture.planes().column(p) + from, pixels.width(), seen[p] + left);
+        splat_internal::CopyPixels(image.planes().column(p) + from, pixels.width(), seen[p] + left);
       } else {
         std::fill_n(by[p], kTileSize, 0.0F);
       }
-      splat_internal::RowToTile(by[p], y, p == SplatPicture::kAlpha ? tile.by_alpha : tile.by_colour[p]);
+      splat_internal::RowToTile(by[p], y, p == SplatImage::kAlpha ? tile.by_alpha : tile.by_colour[p]);
     }
     for (int x = 0; x < kTileSize; ++x) {
       rest[x] = (seen[0][x] * by[0][x] + seen[1][x] * by[1][x]) + (seen[2][x] * by[2][x] + seen[3][x] * by[3][x]);
@@ -59,14 +59,14 @@ void SplatGradient::GoThroughTile(const SplatPicture& picture, const FloatColumn
   }
 }
 
-void SplatGradient::SumRows(const SplatPicture& picture, const ScreenGaussians& screen, int first, int last,
+void SplatGradient::SumRows(const SplatImage& image, const ScreenGaussians& screen, int first, int last,
                             FloatColumns* by_screen) const {
   using Screen = ScreenGaussians;
   const FloatColumns& columns = screen.columns;
   FloatColumns& by = *by_screen;
   std::array<std::pair<int, int>, kRowsASum> slots{};
   for (int row = first; row < last; ++row) {
-    if (rank_of_[row] >= 0) slots[row - first] = picture.tiles().SlotsOf(rank_of_[row]);
+    if (rank_of_[row] >= 0) slots[row - first] = image.tiles().SlotsOf(rank_of_[row]);
   }
   const auto sums_of = [&](int slot) { return sums_.get() + static_cast<size_t>(slot) * kSlotFloats; };
   for (int row = first; row < last; ++row) {
@@ -88,16 +88,16 @@ void SplatGradient::SumRows(const SplatPicture& picture, const ScreenGaussians& 
   }
 }
 
-void SplatGradient::Compute(const SplatPicture& picture, const ScreenGaussians& screen, const FloatColumns& by_planes,
+void SplatGradient::Compute(const SplatImage& image, const ScreenGaussians& screen, const FloatColumns& by_planes,
                             int num_threads, FloatColumns* by_screen) {
   const int count = screen.size();
   BODYLOOM_CHECK(num_threads >= 1, "splat gradient: ", num_threads, " threads, expected at least 1");
-  BODYLOOM_CHECK(picture.num_gaussians() == count, "splat gradient: ", count, " Gaussians, expected the ",
-                 picture.num_gaussians(), " of the picture");
-  BODYLOOM_CHECK(by_planes.columns() == SplatPicture::kNumPlanes && by_planes.rows() == picture.planes().rows(),
+  BODYLOOM_CHECK(image.num_gaussians() == count, "splat gradient: ", count, " Gaussians, expected the ",
+                 image.num_gaussians(), " of the image");
+  BODYLOOM_CHECK(by_planes.columns() == SplatImage::kNumPlanes && by_planes.rows() == image.planes().rows(),
                  "splat gradient: derivatives are ", by_planes.rows(), " by ", by_planes.columns(), ", expected ",
-                 picture.planes().rows(), " by ", static_cast<int>(SplatPicture::kNumPlanes));
-  const SplatTiles& tiles = picture.tiles();
+                 image.planes().rows(), " by ", static_cast<int>(SplatImage::kNumPlanes));
+  const SplatTiles& tiles = image.tiles();
   const size_t size = static_cast<size_t>(tiles.num_slots()) * kSlotFloats;
   if (size > capacity_) {
     capacity_ = 0;
@@ -108,11 +108,10 @@ void SplatGradient::Compute(const SplatPicture& picture, const ScreenGaussians& 
   by_screen->Resize(ScreenGaussians::kNumGradients, count);
   rank_of_.assign(count, -1);
   for (size_t rank = 0; rank < tiles.order().size(); ++rank) rank_of_[tiles.order()[rank]] = static_cast<int>(rank);
-  RunPhases(
-      num_threads,
-      {{[&] { return tiles.num_tiles(); }, [&](int i) { GoThroughTile(picture, by_planes, i); }},
-       {[&] { return (count + kRowsASum - 1) / kRowsASum; },
-        [&](int i) { SumRows(picture, screen, i * kRowsASum, std::min(count, (i + 1) * kRowsASum), by_screen); }}});
+  RunPhases(num_threads,
+            {{[&] { return tiles.num_tiles(); }, [&](int i) { GoThroughTile(image, by_planes, i); }},
+             {[&] { return (count + kRowsASum - 1) / kRowsASum; },
+              [&](int i) { SumRows(image, screen, i * kRowsASum, std::min(count, (i + 1) * kRowsASum), by_screen); }}});
 }
 
 }  // namespace bodyloom

@@ -32,16 +32,16 @@ using VF = hn::Vec<DF>;
 using MF = hn::Mask<DF>;
 
 constexpr int kN = static_cast<int>(hn::MaxLanes(DF()));
-constexpr int kParts = kBlockPixels / kN;  ///< vectors a block
+constexpr int kParts = kBlockPixels / kN;  ///< vectors per block
 constexpr int kEntriesBetweenLooks = 8;
-constexpr int kEntriesAhead = 6;  ///< to be fetched: what a tile draws lies far apart
+constexpr int kEntriesAhead = 6;  ///< prefetch distance: a tile's Gaussians lie far apart in memory
 
-/// Four numbers by column for the lanes of a block's part: lane i gets the one of column i mod 4.
+/// Broadcasts four column values to the lanes of a block's part: lane i gets that of column i mod 4.
 HWY_INLINE VF ByColumn(const float* columns, int part) {
   return hn::LoadDup128(DF(), columns + part * kN % kBlockSize);
 }
 
-/// The blocks of the tile that a Gaussian may reach, and the exponent's constants in the tile's columns.
+/// The blocks of the tile that a Gaussian may cover, and the exponent's constants per column of the tile.
 struct Reach {
   uint32_t blocks;
   alignas(64) float dx[kTileSize];
@@ -49,7 +49,7 @@ struct Reach {
   alignas(64) float slope[kTileSize];  ///< b d_x
 };
 
-/// The pixel rows of the tile for each lane, by the block's place down; and the corners of its blocks.
+/// Pixel rows of the tile per lane and row of blocks, and the corners of its blocks.
 struct TileGrid {
   alignas(64) float y[kBlocksAcross][kBlockPixels];
   alignas(64) float left[kNumBlocks], top[kNumBlocks];
@@ -66,8 +66,8 @@ struct TileGrid {
   }
 };
 
-/// The exponent is concave: over a block that does not hold the mean it is largest on an edge that faces the mean, the
-/// upright one at d_x = nearest column, the level one at d_y = nearest row.
+/// The exponent is concave: over a block without the mean its maximum lies on an edge that faces the mean, the vertical
+/// one at d_x = nearest column or the horizontal one at d_y = nearest row.
 HWY_INLINE uint32_t BlocksReached(const Splat& g, const TileGrid& grid) {
   const DF d;
   const VF zero = hn::Zero(d), width = hn::Set(d, kBlockSize - 1.0F);
@@ -84,7 +84,7 @@ HWY_INLINE uint32_t BlocksReached(const Splat& g, const TileGrid& grid) {
     const VF upright = hn::Add(hn::Mul(a, hn::Mul(x, x)), hn::Mul(best_y, hn::Add(bx, hn::Mul(c, best_y))));
     const VF level = hn::Add(hn::Mul(c, hn::Mul(y, y)), hn::Mul(best_x, hn::Add(by, hn::Mul(a, best_x))));
     uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Ge(hn::Max(upright, level), hn::Set(d, g.least)), bits);
+    hn::StoreMaskBits(d, hn::Ge(hn::Max(upright, level), hn::Set(d, g.minimum)), bits);
     mask |= (bits[0] | static_cast<uint32_t>(bits[1]) << 8) << first;
   }
   return mask;
@@ -106,12 +106,12 @@ HWY_INLINE void FindReach(const Splat& g, const TileGrid& grid, int left, uint32
 /// The blocks that still have a pixel of T ≥ stop.
 HWY_INLINE uint32_t LivingBlocks(const float* transmittance, float stop, uint32_t alive) {
   const DF d;
-  const VF least = hn::Set(d, stop);
+  const VF minimum = hn::Set(d, stop);
   for (uint32_t left = alive; left != 0; left &= left - 1) {
     const int block = std::countr_zero(left);
     bool dead = true;
     for (int part = 0; part < kParts; ++part) {
-      dead = dead && hn::AllTrue(d, hn::Lt(hn::Load(d, transmittance + block * kBlockPixels + part * kN), least));
+      dead = dead && hn::AllTrue(d, hn::Lt(hn::Load(d, transmittance + block * kBlockPixels + part * kN), minimum));
     }
     alive &= ~(static_cast<uint32_t>(dead) << block);
   }
@@ -122,8 +122,8 @@ HWY_INLINE void FetchAhead(const SplatList& list, int i) {
   if (i + kEntriesAhead < list.count) hwy::Prefetch(list.splats + list.entries[i + kEntriesAhead].row);
 }
 
-/// Of the pixels of a part of a block from `column` on: the exponent of 2 that the Gaussian has there, and which of
-/// them take it. Forwards and backwards alike, so that derivatives are those of what was drawn.
+/// For the pixels of a part of a block from `column` on: the Gaussian's exponent of 2 and a mask of the pixels that use
+/// it. Shared by both passes, so that derivatives match the rendered image.
 struct Taking {
   VF t;
   MF takes;
@@ -131,7 +131,7 @@ struct Taking {
 HWY_INLINE Taking TakenBy(const Reach& reach, int column, int part, VF c, VF dy, VF before, VF stop) {
   const VF line = hn::Add(ByColumn(reach.slope + column, part), hn::Mul(c, dy));
   const VF t = hn::Add(ByColumn(reach.base + column, part), hn::Mul(dy, line));
-  return {t, hn::And(hn::Ge(t, hn::Set(DF(), kLeastExponent)), hn::Ge(before, stop))};
+  return {t, hn::And(hn::Ge(t, hn::Set(DF(), kMinExponent)), hn::Ge(before, stop))};
 }
 
 void DrawSplats(const SplatList& list, SplatTile* tile) {
@@ -170,7 +170,7 @@ void DrawSplats(const SplatList& list, SplatTile* tile) {
   }
 }
 
-/// Lanes i, i+4, i+8 and i+12 of sixteen added: (i + (i+8)) + ((i+4) + (i+12)).
+/// Adds lanes i, i+4, i+8 and i+12 of sixteen: (i + (i+8)) + ((i+4) + (i+12)).
 template <class D>
 HWY_INLINE Quad Fold(D d, const hn::Vec<D>* v) {
 #if HWY_TARGET == HWY_SCALAR
@@ -191,7 +191,7 @@ HWY_INLINE Quad Fold(D d, const hn::Vec<D>* v) {
 #endif
 }
 
-/// Sums of four vectors' lanes.
+/// Stores the sums over the lanes of four vectors.
 HWY_INLINE void StoreSums(Quad a, Quad b, Quad c, Quad e, float* to) {
   Transpose(a, b, c, e);
   StoreQuad((a + c) + (b + e), to);

@@ -13,9 +13,9 @@ namespace {
 using Screen = ScreenGaussians;
 
 constexpr int kRowsABatch = 1024;
-constexpr int kRanksAhead = 8;       // fetched ahead: neighbours in depth lie far apart in memory
-constexpr int kLeastChunkBits = 12;  // 4,096 ranks
-constexpr int kMostChunks = 8;       // each keeps a table as long as the picture has tiles
+constexpr int kRanksAhead = 8;     // prefetch distance: neighbours in depth lie far apart in memory
+constexpr int kMinChunkBits = 12;  // 4,096 ranks
+constexpr int kMaxChunks = 8;      // each keeps a table as long as the image has tiles
 constexpr int kTileBits = 4;
 static_assert(1 << kTileBits == kTileSize);
 
@@ -35,10 +35,10 @@ Splat SplatOf(const FloatColumns& screen, int row) {
   s.log2_opacity = screen(row, Screen::kLog2Opacity);
   s.peak_x = -0.5F / s.a, s.peak_y = -0.5F / s.c;
   s.half_width = screen(row, Screen::kHalfWidth), s.half_height = screen(row, Screen::kHalfHeight);
-  // Rounding grows with the parts of the exponent, which cancel in a needle that lies oblique.
+  // Rounding errors grow with the terms of the exponent, which cancel for oblique, thin Gaussians.
   const float width = s.half_width + kTileSize, height = s.half_height + kTileSize;
   const float slack = 0.01F - 2e-6F * (s.a * (width * width) + s.c * (height * height));
-  s.least = kLeastExponent - s.log2_opacity - slack;
+  s.minimum = kMinExponent - s.log2_opacity - slack;
   s.red = screen(row, Screen::kRed), s.green = screen(row, Screen::kGreen), s.blue = screen(row, Screen::kBlue);
   return s;
 }
@@ -85,8 +85,8 @@ void SplatTiles::Order(const ScreenGaussians& screen) {
     count += num_met_[batch];
   }
   order_ = depth_order_.Sort(screen.columns.values(Screen::kDepth), {met_.data(), static_cast<size_t>(count)});
-  chunk_bits_ = kLeastChunkBits;
-  while ((count - 1) >> chunk_bits_ >= kMostChunks) ++chunk_bits_;
+  chunk_bits_ = kMinChunkBits;
+  while ((count - 1) >> chunk_bits_ >= kMaxChunks) ++chunk_bits_;
   const int ranks_a_chunk = 1 << chunk_bits_;
   num_chunks_ = (count + ranks_a_chunk - 1) / ranks_a_chunk;
   if (chunks_.size() < num_chunks_) chunks_.resize(num_chunks_);
@@ -97,7 +97,7 @@ void SplatTiles::Order(const ScreenGaussians& screen) {
 }
 
 PixelBox SplatTiles::TilesOf(const Splat& s) const {
-  // From the pixels whose centres lie within the extents.
+  // Tiles of the pixels whose centres lie within the extents.
   const auto first = [](float low, int begin) { return std::max(0, (-FloorToInt(-low) >> kTileBits) - begin); };
   const auto last = [](float high, int begin, int count) {
     return std::min(count - 1, (FloorToInt(high) >> kTileBits) - begin);
@@ -123,7 +123,7 @@ void SplatTiles::SortChunk(int index) {
     int32_t *tile_of_slot = chunk.tile_of_slot.data(), *row_of_slot = chunk.row_of_slot.data();
     const int first = tiles.y_begin * tiles_across_ + tiles.x_begin;
     if (tiles.width() <= 2 && tiles.height() <= 2 && !tiles.empty()) {
-      // What most are, without a branch that cannot be foreseen.
+      // The common case, without an unpredictable branch.
       const size_t two_across = tiles.width() - 1, two_down = tiles.height() - 1;
       for (int k = 0; k < 4; ++k) row_of_slot[num_slots + k] = row;
       tile_of_slot[num_slots++] = first;
@@ -188,7 +188,7 @@ namespace {
 constexpr int kDigitBits = 11;
 constexpr uint32_t kDigits = 1U << kDigitBits;
 
-/// Rises with the float.
+/// Integer key with the order of the floats.
 uint32_t RisingKey(float depth) {
   const auto bits = std::bit_cast<uint32_t>(depth);
   return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
@@ -199,23 +199,23 @@ uint32_t RisingKey(float depth) {
 std::span<const int32_t> DepthOrder::Sort(std::span<const float> depth, std::span<const int32_t> rows) {
   const size_t count = rows.size();
   items_.resize(count), other_.resize(count), sorted_.resize(count);
-  uint32_t least = UINT32_MAX, most = 0;
+  uint32_t minimum = UINT32_MAX, maximum = 0;
   for (size_t i = 0; i < count; ++i) {
     const uint32_t key = RisingKey(depth[rows[i]]);
     items_[i] = {key, rows[i]};
-    least = std::min(least, key), most = std::max(most, key);
+    minimum = std::min(minimum, key), maximum = std::max(maximum, key);
   }
-  const uint32_t range = count == 0 ? 0 : most - least;
+  const uint32_t range = count == 0 ? 0 : maximum - minimum;
   for (int shift = 0; shift < 32 && (range >> shift) != 0; shift += kDigitBits) {
     std::array<uint32_t, kDigits> at{};
-    for (const Item& item : items_) ++at[((item.key - least) >> shift) % kDigits];
+    for (const Item& item : items_) ++at[((item.key - minimum) >> shift) % kDigits];
     uint32_t sum = 0;
     for (uint32_t& entry : at) {
       const uint32_t here = entry;
       entry = sum;
       sum += here;
     }
-    for (const Item& item : items_) other_[at[((item.key - least) >> shift) % kDigits]++] = item;
+    for (const Item& item : items_) other_[at[((item.key - minimum) >> shift) % kDigits]++] = item;
     items_.swap(other_);
   }
   for (size_t i = 0; i < count; ++i) sorted_[i] = items_[i].row;

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 double Cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Barycentrics of the point of a triangle nearest to x, and its squared distance.
+/// Computes the barycentrics of the point of a triangle nearest to x; returns its squared distance.
 double NearestInTriangle(const std::array<Vector2d, 3>& t, const Vector2d& x, Vector3d* barycentric) {
   const double area = Cross(t[1] - t[0], t[2] - t[0]);
   if (area != 0) {
@@ -99,8 +99,8 @@ SurfacePoint ChartLookup::Find(int part, const Vector2d& uv, double* gap) const 
   double best = std::numeric_limits<double>::infinity();
   const double smallest_cell = chart.cell.minCoeff();
   for (int ring = 0; ring < kCells; ++ring) {
-    const double least = std::max(0, ring - 1) * smallest_cell;
-    if (least * least > best) break;
+    const double minimum = std::max(0, ring - 1) * smallest_cell;
+    if (minimum * minimum > best) break;
     for (int y = std::max(0, y_0 - ring); y <= std::min(kCells - 1, y_0 + ring); ++y) {
       const bool whole_row = std::abs(y - y_0) == ring;
       for (int x = x_0 - ring; x <= x_0 + ring; x += whole_row || ring == 0 ? 1 : 2 * ring) {

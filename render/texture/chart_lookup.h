@@ -18,12 +18,12 @@ class ChartLookup {
   explicit ChartLookup(const BodyModel& body);
 
   /// The point of part 1..24 at (u, v); where the chart does not cover (u, v), the covered point nearest to it in chart
-  /// units, whose distance goes to `gap` when requested (0 inside). Of faces equally near the lowest index is taken.
-  /// Weights are in [0, 1]. A part that the body lacks, or coordinates that are not finite, give face −1.
+  /// units, at the distance `gap` (may be null; 0 inside). Of equally near faces the lowest index is taken. Weights are
+  /// in [0, 1]. Face −1 for a part that the body lacks or coordinates that are not finite.
   [[nodiscard]] SurfacePoint Find(int part, const Eigen::Vector2d& uv, double* gap = nullptr) const;
 
  private:
-  static constexpr int kCells = 32;  ///< a side, over the chart's box
+  static constexpr int kCells = 32;  ///< per side, over the chart's box
   struct Triangle {
     int face;
     std::array<Eigen::Vector2d, 3> corners;

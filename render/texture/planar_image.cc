@@ -16,7 +16,7 @@ constexpr std::array<Colour, 7> kLabelColours = {
 
 }  // namespace
 
-Image PictureOf(std::span<const float> planar, int width, int height) {
+Image ImageFromPlanes(std::span<const float> planar, int width, int height) {
   Image image(width, height);
   const size_t area = size_t(width) * height;
   for (size_t i = 0; i < area; ++i) {
@@ -25,7 +25,7 @@ Image PictureOf(std::span<const float> planar, int width, int height) {
   return image;
 }
 
-Image NormalPicture(std::span<const float> planar, int width, int height) {
+Image NormalImage(std::span<const float> planar, int width, int height) {
   Image image(width, height);
   const size_t area = size_t(width) * height;
   for (size_t i = 0; i < area; ++i) {
@@ -38,7 +38,7 @@ Image NormalPicture(std::span<const float> planar, int width, int height) {
   return image;
 }
 
-Image LabelsPicture(std::span<const uint8_t> labels, int width, int height) {
+Image LabelsImage(std::span<const uint8_t> labels, int width, int height) {
   Image image(width, height);
   for (size_t i = 0; i < labels.size(); ++i) {
     const Colour colour = kLabelColours[labels[i] % kLabelColours.size()];

@@ -60,7 +60,7 @@ void TextureExtractor::FindEdges(std::span<const uint8_t> person, int image_widt
       const size_t p = size_t(y) * width + x;
       const bool right = x + 1 < width && is_step(depth[p], depth[p + 1]);
       const bool below = y + 1 < height && is_step(depth[p], depth[p + width]);
-      const bool border = x == 0 || y == 0 || x + 1 == width || y + 1 == height;  // beyond the box is background
+      const bool border = x == 0 || y == 0 || x + 1 == width || y + 1 == height;  // outside the box is background
       const bool other = !person.empty() && person[size_t(box.y_begin + y) * image_width + box.x_begin + x] == 0;
       edge[p] |= border || right || below || other || !std::isfinite(depth[p]);
       if (right) edge[p + 1] = 1;
@@ -70,11 +70,11 @@ void TextureExtractor::FindEdges(std::span<const uint8_t> person, int image_widt
       if (below && is_limb(p, p + width)) limb[p] = limb[p + width] = 1;
     }
   }
-  // Spread by margin − 1 along rows, then along columns: the pixel at a step counts as one already.
+  // Dilated by margin − 1 along rows, then along columns: the pixel at a step is already marked.
   const auto spread = [](const std::vector<uint8_t>& from, int reach, std::vector<uint8_t>* to, int count, size_t start,
                          size_t step) {
     int last = -(1 << 20);
-    for (int i = 0; i < count; ++i) {  // as seen from the left, then from the right
+    for (int i = 0; i < count; ++i) {  // from the left, then from the right
       if (from[start + i * step]) last = i;
       if (i - last <= reach) (*to)[start + i * step] = 1;
     }
@@ -105,16 +105,17 @@ int TextureExtractor::Add(const Image& image, const MatrixX3d& vertices_in_camer
   BODYLOOM_CHECK(person.empty() || person.size() == size_t(image.width) * image.height, "texture: frame ", frame,
                  ": a mask of ", person.size(), " pixels for ", image.width, "x", image.height);
   buffer_.Render(vertices_in_camera, body_.data().faces, camera);
-  const std::vector<TexelSight> sights = SeeTexels(table_, body_, vertices_in_camera, camera, buffer_, options_.sight);
+  const std::vector<TexelVisibility> sights =
+      ComputeTexelVisibility(table_, body_, vertices_in_camera, camera, buffer_, options_.sight);
   FindEdges(person, image.width);
   int num_seen = 0;
   for (size_t i = 0; i < sights.size(); ++i) {
-    const TexelSight& sight = sights[i];
+    const TexelVisibility& sight = sights[i];
     if (!(sight.cosine > 0) || IsNearEdge(sight.x_px, sight.y_px)) continue;
     ++num_seen;
     Sample sample;
     sample.weight = sight.cosine * sight.cosine / std::max(1.0F, sight.texels_per_pixel);
-    // The worst of the kept samples makes room; of equals the earlier frame stays.
+    // Replaces the kept sample of lowest weight; of equals the earlier frame stays.
     Sample* own = &samples_[i * options_.keep];
     Sample* worst = std::min_element(own, own + options_.keep,
                                      [](const Sample& a, const Sample& b) { return a.weight < b.weight; });
@@ -168,7 +169,7 @@ Texture TextureExtractor::Merge() const {
         for (size_t k = 0; k < samples.size(); ++k) {
           sum += samples[k].weight;
           if (2 * sum < total) continue;
-          // Exactly half on both sides: the middle of the two.
+          // Exactly half on both sides: the mean of the two.
           value = 2 * sum == total && k + 1 < samples.size() ? 0.5F * (samples[k].bgr[c] + samples[k + 1].bgr[c])
                                                              : samples[k].bgr[c];
           break;

@@ -43,7 +43,7 @@ UvTaps TapsAt(const UvTexelTable& table, const UvPoint& point) {
   }
   taps.whole = taps.count == 4;
   if (taps.whole) return taps;
-  if (!(sum > 1e-9)) {  // the lookup stands at the boundary of texels that are not the chart's
+  if (!(sum > 1e-9)) {  // the point lies on the boundary of texels outside the chart
     taps.count = 0;
     return taps;
   }

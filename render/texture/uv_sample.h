@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Sampling of UV maps into the image: Π of Yoon et al. (eq. 5), f(x) = f_uv(u(x)), with derivatives by (u, v).
+/// Samples UV maps into the image: Π of Yoon et al. (eq. 5), f(x) = f_uv(u(x)), with derivatives by (u, v).
 ///
-/// Lookups are bilinear in float (cv::remap rounds coordinates to 1/32 of a texel) and check charts: a tap that belongs
-/// to another chart, or to none, is left out and the others are scaled to sum 1. So nothing bleeds where charts lie
-/// close, and the map's gutter (geometry/uv_maps/uv_texels.h) makes lookups at a seam exact.
+/// Lookups are bilinear in float (cv::remap rounds coordinates to 1/32 of a texel) and check charts: taps in another
+/// chart, or in none, are excluded and the others are normalised to sum 1. Hence adjacent charts do not bleed into each
+/// other, and the map's gutter (geometry/uv_maps/uv_texels.h) makes lookups at a seam exact.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@
 
 namespace bodyloom {
 
-/// A place on the atlas.
+/// A point of the atlas.
 struct UvPoint {
   Eigen::Vector2d uv = Eigen::Vector2d::Zero();
   int chart = -1;
@@ -37,8 +37,8 @@ struct UvTaps {
 
 UvTaps TapsAt(const UvTexelTable& table, const UvPoint& point);
 
-/// The image of C maps (C planes of the table's size) as the visible points see it: C planes of width × height, zero
-/// elsewhere. `points` come from ResolveVisiblePoints. Throws std::invalid_argument when sizes do not fit.
+/// Samples C maps (C planes of the table's size) at the visible points: C planes of width × height, zero elsewhere.
+/// `points` come from ResolveVisiblePoints. Throws std::invalid_argument when sizes do not fit.
 std::vector<float> ProjectUvMaps(const BodyModel& body, const UvCharts& charts, const UvTexelTable& table,
                                  std::span<const float> maps, int num_channels, const VisiblePoints& points, int width,
                                  int height);

@@ -11,7 +11,7 @@
 #include "geometry/base/parallel.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/uv_maps/uv_bake_simd.h"
-#include "render/texture/texel_sight.h"
+#include "render/texture/texel_visibility.h"
 
 namespace bodyloom::describe_internal {
 
@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Returns `track` after the checks that must come before anything is computed of it.
+/// Returns `track` after checking the arguments; used in the initialiser list.
 const Track& Checked(const BodyModel& body, const Track& track, const DescriptorOptions& options) {
   std::string why;
   BODYLOOM_CHECK(options.IsValid(&why), "describe: ", why);
@@ -57,7 +57,7 @@ DescriptorMaps::DescriptorMaps(const BodyModel& body, const Track& track, const 
   stencils_ = VelocityStencils(track.motion.timestamps, usable, options.velocity);
 }
 
-/// The frame whose velocities are V_{t−k} of frame t; −1: none, they are zero.
+/// The frame whose velocities are V_{t−k} of frame t; −1: none, velocities are zero.
 int DescriptorMaps::PastFrame(int t, int k) const {
   const int s = t - k;
   return s >= 0 && stencils_[s].segment >= 0 && stencils_[s].segment == stencils_[t].segment &&
@@ -96,7 +96,7 @@ void DescriptorMaps::PoseFor(std::span<const int> frames) {
   counts_.frames_posed += posed_.Need(std::vector<int>(vertices.begin(), vertices.end()));
 }
 
-/// A map of what `bake` writes into three planes of floats.
+/// Stores as a map the three planes of floats that `bake` writes.
 template <typename Bake>
 Map DescriptorMaps::Baked(Scratch* scratch, const Bake& bake) {
   Map map = maps_.Take();
@@ -118,7 +118,7 @@ Map DescriptorMaps::NormalMap(int t, Scratch* scratch, NormalSummary* summary, i
   });
 }
 
-/// `velocities`: of the vertices, or empty to take differences.
+/// `velocities`: of the vertices; empty: computed by finite differences.
 Map DescriptorMaps::VelocityMap(int s, std::span<const float> velocities, Scratch* scratch) {
   if (velocities.empty()) {
     const VelocityStencil& stencil = stencils_[s];
@@ -159,7 +159,7 @@ void DescriptorMaps::TurnToCamera(int t, std::span<float> planes) const {
   vectors = (R * vectors).eval();
 }
 
-/// The frame's vertices as its camera sees them.
+/// The frame's vertices in its camera frame.
 MatrixX3d DescriptorMaps::VerticesInCamera(int t) const {
   const Vector3d rest_root = shape_.rest_joints.row(0).transpose();
   BodyPose in_camera =
@@ -209,7 +209,7 @@ void DescriptorMaps::Use(int i, const std::function<void(Maps, const FrameSummar
   const int t = frames_[i];
   FrameSummary summary;
   std::vector<std::span<const char>> maps;
-  std::vector<Map> own;  // for as long as the maps are needed
+  std::vector<Map> own;  // keeps the maps alive
   own.reserve(options_.past);
   std::unique_ptr<SightScratch> scratch = scratch_.Take();
   if (options_.normals) maps.emplace_back(HasFit(t) ? normal_maps_[i] : zero_map_);
@@ -238,8 +238,8 @@ void DescriptorMaps::Use(int i, const std::function<void(Maps, const FrameSummar
 SeenTexels FindSeenTexels(const UvTexelTable& table, const BodyModel& body, const MatrixX3d& vertices,
                           const Camera& camera, VisibilityBuffer* buffer) {
   buffer->Render(vertices, body.data().faces, camera);
-  const std::vector<TexelSight> sights =
-      SeeTexels(table, body, vertices, camera, *buffer, {.min_cosine = 0, .whole_footprint = false});
+  const std::vector<TexelVisibility> sights =
+      ComputeTexelVisibility(table, body, vertices, camera, *buffer, {.min_cosine = 0, .whole_footprint = false});
   SeenTexels result;
   std::vector<char>& seen = result.seen;
   seen.assign(size_t(table.width) * table.height, 0);
@@ -249,7 +249,7 @@ SeenTexels FindSeenTexels(const UvTexelTable& table, const BodyModel& body, cons
     num_seen += sights[i].cosine > 0;
   }
   result.share = static_cast<double>(num_seen) / table.num_inside;
-  // A gutter texel goes with the texels of its chart beside it.
+  // A gutter texel follows the adjacent texels of its chart.
   for (size_t i = 0; i < table.size(); ++i) {
     if (!table.in_gutter[i]) continue;
     const int x = table.pixel[i] % table.width, y = table.pixel[i] / table.width;
@@ -257,7 +257,7 @@ SeenTexels FindSeenTexels(const UvTexelTable& table, const BodyModel& body, cons
       for (int p = std::max(0, x - 1); p <= std::min(table.width - 1, x + 1); ++p) {
         const int beside = q * table.width + p;
         if (seen[beside] == 1 && table.chart_at[beside] == table.chart_at[table.pixel[i]]) {
-          seen[table.pixel[i]] = 2;  // 2: does not spread
+          seen[table.pixel[i]] = 2;  // 2: not propagated further
         }
       }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Makes the maps of a track's descriptors, a few frames at a time: every map that two frames share is made once. Both
-/// the file (describe_track.h) and the planes in memory (descriptor_frames.h) come from here.
+/// Computes the maps of a track's descriptors, a few frames at a time; maps shared by several frames are computed once.
+/// Used for files (describe_track.h) and for planes in memory (descriptor_frames.h).
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@
 
 namespace bodyloom::describe_internal {
 
-/// What one worker needs to make maps, and to find which of their texels are seen.
+/// Scratch memory of one worker for maps and their visible texels.
 struct SightScratch : Scratch {
   VisibilityBuffer buffer;
 };
@@ -26,35 +26,35 @@ struct SightScratch : Scratch {
 /// Frames whose maps are held at the same time.
 inline constexpr int kFramesInFlight = 32;
 
-/// How maps are kept.
+/// Options of the storage of maps.
 struct DescriptorMapsOptions {
   bool half = false;       ///< maps of float16 instead of float32
-  bool reuse_past = true;  ///< false: makes all velocity maps of a frame for that frame alone; the same values
+  bool reuse_past = true;  ///< false: computes all velocity maps anew for each frame; same values
 };
 
-/// For a chunk of frames: PoseFor(), Make(), then Use() of each, by any thread.
+/// Call for a chunk of frames: PoseFor(), Make(), then Use() for each frame, from any thread.
 class DescriptorMaps {
  public:
-  /// What was computed so far.
+  /// Counts of the work so far.
   struct Counts {
     int frames_posed = 0, normal_maps = 0, velocity_maps = 0;
     NormalSummary normals;
     int normal_texels_cancelled = 0;  ///< texels whose corners' normals cancelled out
   };
   struct FrameSummary {
-    int velocity_maps = 0;  ///< made for this frame alone
+    int velocity_maps = 0;  ///< computed for this frame
     double seen = 0;        ///< seen_only: share of the texels
   };
-  /// The maps of a frame in the order of the channels, three planes each (seen_only: all of them in one).
+  /// The maps of a frame in the order of the channels, three planes each (seen_only: one map with all planes).
   using Maps = std::span<const std::span<const char>>;
 
   /// Borrows body and track, and throws as DescriptorFrames' constructor does.
   DescriptorMaps(const BodyModel& body, const Track& track, const DescriptorOptions& options,
                  const DescriptorMapsOptions& how = {});
 
-  /// Poses what these frames (rising, at most kFramesInFlight) need, and releases what they do not.
+  /// Poses the body for these frames (ascending, at most kFramesInFlight) and releases memory of others.
   void PoseFor(std::span<const int> frames);
-  /// Makes their maps that are not there yet.
+  /// Computes their missing maps.
   void Make();
   /// Calls `use` with the maps of frame i of PoseFor(). They are valid during the call.
   void Use(int i, const std::function<void(Maps, const FrameSummary&)>& use);
@@ -76,7 +76,7 @@ class DescriptorMaps {
   Map VelocityMap(int s, std::span<const float> velocities, Scratch* scratch);
   [[nodiscard]] std::vector<float> AnalyticVelocities(std::span<const int> frames) const;
   [[nodiscard]] MatrixX3d VerticesInCamera(int t) const;
-  /// Vectors of frame t from the scene's axes into those of a camera that moves, where these are asked for.
+  /// Rotates vectors of frame t from the scene's axes to those of a moving camera, if the options request these.
   void TurnToCamera(int t, std::span<float> planes) const;
   Map OnlySeen(int t, Maps maps, VisibilityBuffer* buffer, double* share) const;
 
@@ -98,24 +98,22 @@ class DescriptorMaps {
   Counts counts_;
 
   std::vector<int> frames_;             ///< of the last PoseFor()
-  std::vector<int> new_velocity_maps_;  ///< frames whose maps Make() will make
+  std::vector<int> new_velocity_maps_;  ///< frames whose maps Make() will compute
   std::vector<Map> normal_maps_;        ///< of frames_, empty without a fit
-  std::vector<int> held_;               ///< frames with a velocity map, rising
+  std::vector<int> held_;               ///< frames with a velocity map, ascending
   std::vector<Map> velocity_maps_;      ///< by frame, empty where not held
 };
 
-// Visible texels of the body's maps in a frame, and maps of these alone.
-
 struct SeenTexels {
-  std::vector<char> seen;  ///< W·H, not 0 where it is seen; a gutter texel goes with the texels of its chart beside it
+  std::vector<char> seen;  ///< W·H, not 0: seen; a gutter texel follows the adjacent texels of its chart
   double share = 0;        ///< of the texels inside the charts
 };
 
-/// `buffer` is room for the picture.
+/// Finds the texels visible in a frame. `buffer` is scratch memory.
 SeenTexels FindSeenTexels(const UvTexelTable& table, const BodyModel& body, const MatrixX3d& vertices_in_camera,
                           const Camera& camera, VisibilityBuffer* buffer);
 
-/// The maps (each of three planes of items of `item_size` bytes) one after another, zero at texels that are not seen.
+/// Concatenates the maps (each of three planes of items of `item_size` bytes), zero at texels that are not seen.
 std::vector<char> KeepSeen(const UvTexelTable& table, const std::vector<char>& seen,
                            std::span<const std::span<const char>> maps, size_t item_size);
 

@@ -108,9 +108,9 @@ class LiveDescriptors::Impl {
   SurfaceMaps maps_;
   Skinner skinner_;
   std::unique_ptr<Scratch> scratch_;
-  std::vector<float> vertices_;  ///< of the frame before and of this one
+  std::vector<float> vertices_;  ///< of the previous and the current frame
   double last_s_ = -std::numeric_limits<double>::infinity();
-  std::optional<BodyPose> before_;             ///< of the frame before, if nothing lies between
+  std::optional<BodyPose> before_;             ///< of the previous frame, if no gap lies between
   std::deque<std::vector<float>> velocities_;  ///< maps, newest first
 };
 

@@ -69,9 +69,8 @@ std::vector<PersonExtent> PosedTrack::Extents(int num_threads) const {
       extent.min = extent.min.cwiseMin(pixel);
       extent.max = extent.max.cwiseMax(pixel);
     }
-    const bool in_picture =
-        extent.max.minCoeff() >= 0 && extent.min.x() < camera.width && extent.min.y() < camera.height;
-    if (in_picture) extents[t] = extent;
+    const bool in_image = extent.max.minCoeff() >= 0 && extent.min.x() < camera.width && extent.min.y() < camera.height;
+    if (in_image) extents[t] = extent;
   });
   return extents;
 }

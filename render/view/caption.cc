@@ -12,7 +12,7 @@ namespace bodyloom {
 namespace {
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-constexpr int kFine = 4;  // letters are drawn this much larger and averaged: OpenCV's small strokes are rough
+constexpr int kFine = 4;             // supersampling of letters: OpenCV's small strokes are rough
 constexpr double kCapHeight = 21.0;  // of a capital letter at font scale 1, pixels
 
 std::string Printable(std::string text) {
@@ -62,7 +62,7 @@ double WidthOfWords(const std::string& text, double cap_px) {
 }
 
 void DrawWords(const std::string& text, int x, int baseline, double cap_px, Colour colour, Image* image) {
-  // A picture of the words with room for what hangs below the line, and the part of it that lies in the image.
+  // An image of the words with room for descenders, and the part of it inside the target.
   const int above = static_cast<int>(std::ceil(1.4 * cap_px)), below = static_cast<int>(std::ceil(0.6 * cap_px));
   const cv::Rect words(x - 2, baseline - above, static_cast<int>(std::ceil(WidthOfWords(text, cap_px))) + 6,
                        above + below);

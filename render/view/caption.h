@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Text on pictures: a few lines on a translucent panel in a corner.
+/// Draws text on pictures: a few lines on a translucent panel in a corner.
 #pragma once
 
 #include <string>
@@ -19,14 +19,13 @@ struct CaptionLine {
   Colour colour = {};
 };
 
-/// Draws the lines, left aligned, letters about height_px high (0: 1/45 of the image's smaller side, at least 9 px). A
-/// line that is too long for the image is made smaller. Nothing is drawn for an empty list.
+/// Draws the lines, left aligned, letters about height_px high (0: 1/45 of the image's smaller side, at least 9 px).
+/// Lines too long for the image are drawn smaller. An empty list draws nothing.
 void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double height_px, Image* image);
 
-/// One line without a panel: letters cap_px high standing on `baseline`, the first at x. What falls outside is left
-/// out.
+/// Draws one line without a panel: letters cap_px high on `baseline`, starting at x. Clipped at the image's borders.
 void DrawWords(const std::string& text, int x, int baseline, double cap_px, Colour colour, Image* image);
-/// How wide that is, pixels.
+/// Width of the line drawn by DrawWords, pixels.
 double WidthOfWords(const std::string& text, double cap_px);
 
 }  // namespace bodyloom

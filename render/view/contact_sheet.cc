@@ -8,17 +8,17 @@
 
 namespace bodyloom {
 
-Image ContactSheet(const std::vector<Image>& pictures, const ContactSheetOptions& options) {
-  BODYLOOM_CHECK(!pictures.empty(), "contact sheet: no pictures");
+Image ContactSheet(const std::vector<Image>& images, const ContactSheetOptions& options) {
+  BODYLOOM_CHECK(!images.empty(), "contact sheet: no images");
   BODYLOOM_CHECK(options.cell_height_px > 0 && options.gap_px >= 0 && options.columns >= 0, "contact sheet: cells of ",
                  options.cell_height_px, " px, gap of ", options.gap_px, " px, ", options.columns, " columns");
   std::vector<Image> cells;
   int cell_width = 1;
-  for (const Image& picture : pictures) {
-    BODYLOOM_CHECK(!picture.empty(), "contact sheet: a picture is empty");
-    const double scale = double(options.cell_height_px) / picture.height;
-    const int width = std::max(1, static_cast<int>(std::lround(picture.width * scale)));
-    cells.push_back(Resized(picture, width, options.cell_height_px));
+  for (const Image& image : images) {
+    BODYLOOM_CHECK(!image.empty(), "contact sheet: an image is empty");
+    const double scale = double(options.cell_height_px) / image.height;
+    const int width = std::max(1, static_cast<int>(std::lround(image.width * scale)));
+    cells.push_back(Resized(image, width, options.cell_height_px));
     cell_width = std::max(cell_width, width);
   }
   const int n = static_cast<int>(cells.size());

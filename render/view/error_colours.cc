@@ -28,7 +28,7 @@ std::array<Colour, kShades> Viridis() {
   return result;
 }
 
-/// As short as it can be said: "50", "0.5".
+/// Shortest decimal form: "50", "0.5".
 std::string ShortNumber(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
@@ -75,14 +75,14 @@ void DrawErrorLegend(const ErrorScale& scale, int x, int y, int width, double ca
   for (int i = 0; i < bar_width; ++i) {
     FillBox(bar_x + i, bar_y, 1, bar_height, ErrorColour(i / (bar_width - 1.0)), 1, image);
   }
-  const std::string most = ">= " + ShortNumber(scale.maximum) + " " + scale.unit;
+  const std::string maximum = ">= " + ShortNumber(scale.maximum) + " " + scale.unit;
   say("0", 0, below(5.7));
-  // Not where it would run into the maximum.
+  // Omitted where it would overlap the maximum.
   const std::string half = ShortNumber(scale.maximum / 2);
-  if (0.5 * bar_width + WidthOfWords(half, cap_px) + WidthOfWords(most, cap_px) < bar_width) {
+  if (0.5 * bar_width + WidthOfWords(half, cap_px) + WidthOfWords(maximum, cap_px) < bar_width) {
     say(half, 0.5, below(5.7));
   }
-  say(most, 1, below(5.7));
+  say(maximum, 1, below(5.7));
 }
 
 }  // namespace bodyloom

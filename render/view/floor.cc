@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Two directions of the floor: `right` lies across the view.
+/// Two axes in the floor: `right` is perpendicular to the viewing direction.
 void FloorAxes(const Floor& floor, Vector3d* right, Vector3d* ahead) {
   Vector3d across = Vector3d::UnitX() - Vector3d::UnitX().dot(floor.up) * floor.up;
   if (across.norm() < 1e-3) across = Vector3d::UnitY() - Vector3d::UnitY().dot(floor.up) * floor.up;
@@ -108,7 +108,7 @@ void DrawShadow(const MatrixX3d& vertices, const MatrixX3i& faces, const Floor& 
     height = std::max(height, above);
     flat.row(v) = (x + above / -floor.up.dot(fall) * fall).transpose();
   }
-  // A shadow is soft: half the resolution is enough, blurred by a few centimetres.
+  // Half the resolution suffices for a shadow blurred by a few centimetres.
   constexpr double kScale = 0.5;
   VisibilityBuffer buffer;
   const Camera coarse = ScaledCamera(camera, kScale);
@@ -140,7 +140,7 @@ void DrawShadow(const MatrixX3d& vertices, const MatrixX3i& faces, const Floor& 
 
 namespace {
 
-/// More is surer: how it was found, then the spread of its vertical.
+/// Orders world frames by certainty: by source, then by the spread of the vertical. Larger is more certain.
 std::pair<int, double> SurenessOf(const WorldFrame& world) {
   const double sigma = world.vertical_sigma_deg;
   return {static_cast<int>(world.source), std::isfinite(sigma) ? -sigma : -180};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A floor under the person: a grid that gives pictures a scale and a soft shadow that ties the body to the ground.
+/// Draws a floor under the person: a grid that shows scale and a soft shadow of the body.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,8 +20,8 @@ struct Floor {
   Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
 };
 
-/// The floor on which a person stands in a clip: level with `up`, a few centimetres under the lowest joint, which is an
-/// ankle or a foot, of all frames (joints J×3, no rows where a frame is unknown). Nothing when no frame is known.
+/// Estimates the floor of a clip: perpendicular to `up`, a few centimetres below the lowest joint (an ankle or foot) of
+/// all frames (joints J×3, no rows where a frame is unknown). Empty when no frame is known.
 std::optional<Floor> FloorUnder(const std::vector<MatrixX3d>& joints, const Eigen::Vector3d& up);
 
 struct FloorGridStyle {
@@ -31,7 +31,7 @@ struct FloorGridStyle {
   Colour colour{96, 104, 120};
 };
 
-/// Grid lines around the floor point nearest to `centre` (camera frame), at whole multiples of the spacing from
+/// Draws grid lines around the floor point nearest to `centre` (camera frame), at multiples of the spacing from
 /// floor.point.
 void DrawFloorGrid(const Floor& floor, const Eigen::Vector3d& centre, const FloorGridStyle& style, const Camera& camera,
                    Image* image);
@@ -41,18 +41,18 @@ void DrawFloorGrid(const Floor& floor, const Eigen::Vector3d& centre, const Floo
 void DrawShadow(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Floor& floor, const Camera& camera,
                 double strength, Image* image);
 
-// The world of tracks (geometry/scene/world_frame.h): what their files say, or what is assumed where they say nothing.
+// The world frame of tracks (geometry/scene/world_frame.h): from their files, or assumed.
 
-/// The vertical is known and the ground is not: it lies a few centimetres under the lowest joint (FloorUnder(),
+/// World frame with a known vertical and an estimated ground: a few centimetres below the lowest joint (FloorUnder(),
 /// render/view/floor.h; frames of J×3, camera frame, no rows where a frame is unknown), or at the camera when no frame
 /// is known. The source is WorldSource::kVertical.
 WorldFrame WorldUnderJoints(const Eigen::Vector3d& up_in_camera, const std::vector<MatrixX3d>& joints);
 
-/// Nothing is known: a level camera, the ground under the lowest joint.
+/// World frame without any information: a level camera, the ground below the lowest joint.
 WorldFrame AssumedWorld(const std::vector<MatrixX3d>& joints);
 
-/// One world for tracks in one camera frame, whose joints are `joints` (of all of them): of those that say where theirs
-/// is, the one surest of its vertical, several people's before one's; AssumedWorld() when none says.
+/// One world frame for tracks in one camera frame with `joints` (of all of them): of the tracks' own, the one with the
+/// most certain vertical, those estimated from several people first; AssumedWorld() if no track has one.
 WorldFrame WorldOfTracks(const std::vector<const Track*>& tracks, const std::vector<MatrixX3d>& joints);
 
 }  // namespace bodyloom

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 bool IsKnown(const MatrixX3d& frame) { return frame.rows() > 0; }
 
-/// The root's path blurred over about a second, so that a camera on it moves smoothly; lost frames are bridged.
+/// Smooths the root's path over about a second for a smooth camera; lost frames are interpolated.
 MatrixX3d SmoothRootPath(const std::vector<MatrixX3d>& joints, const std::vector<double>& times) {
   constexpr double kBlur_s = 0.35;
   const int T = static_cast<int>(joints.size());
@@ -32,7 +32,7 @@ MatrixX3d SmoothRootPath(const std::vector<MatrixX3d>& joints, const std::vector
     double weights = 0;
     for (size_t i = first; i < known.size() && (i == first || times[known[i]] < times[t] + 3 * kBlur_s); ++i) {
       const double lag = (times[known[i]] - times[t]) / kBlur_s;
-      const double weight = std::max(std::exp(-0.5 * lag * lag), 1e-9);  // in a long gap the nearest frame still counts
+      const double weight = std::max(std::exp(-0.5 * lag * lag), 1e-9);  // positive in long gaps
       sum += weight * joints[known[i]].row(0).transpose();
       weights += weight;
     }
@@ -41,7 +41,7 @@ MatrixX3d SmoothRootPath(const std::vector<MatrixX3d>& joints, const std::vector
   return path;
 }
 
-/// The upright cylinder about the origin that holds all points, as rings of points: the same from every side.
+/// Vertical bounding cylinder of all points about the origin, as rings of points: rotationally symmetric.
 MatrixX3d Cylinder(const std::vector<MatrixX3d>& points, const Vector3d& up) {
   constexpr int kAround = 24;
   double low = 0, high = 0, radius = 0;

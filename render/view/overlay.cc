@@ -179,9 +179,9 @@ SidePanel::Picture SidePanel::At(int t, const Floor& floor) const {
   const View view = follow_.At(t);
   const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
   const Eigen::Vector3d& translation = view.from_camera.camera_from_world_translation;
-  Picture picture{view, {R * floor.point + translation, R * floor.up}, backdrop_};
-  DrawFloorGrid(picture.floor, R * follow_.CentreAt(t) + translation, {}, view.camera, &picture.image);
-  return picture;
+  Picture rendered{view, {R * floor.point + translation, R * floor.up}, backdrop_};
+  DrawFloorGrid(rendered.floor, R * follow_.CentreAt(t) + translation, {}, view.camera, &rendered.image);
+  return rendered;
 }
 
 Image Beside(const Image& left, const Image& right) {

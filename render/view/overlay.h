@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The picture by which a track is judged: the projected body over the video (or a plain backdrop), detected and
-/// projected landmarks, a caption, and on request the same body seen from the side, where errors in depth show. A
-/// camera that moves shows each frame as it saw it; the side view is of the scene.
+/// Draws overlays to judge a track: the projected body over the video (or a plain backdrop), detected and projected
+/// landmarks, a caption, and optionally a side view, where errors in depth are visible. With a moving camera the
+/// overlay uses each frame's camera, the side view the scene frame.
 #pragma once
 
 #include <optional>
@@ -22,21 +22,19 @@
 
 namespace bodyloom {
 
-// The panel beside an overlay in which the same scene is seen from its side, where errors in depth show.
-
 class SidePanel {
  public:
-  /// As FollowView, whose view it shows.
+  /// Arguments of FollowView.
   SidePanel(const std::vector<MatrixX3d>& joints, const std::vector<double>& timestamps,
             const FollowViewOptions& options, const std::vector<MatrixX3d>& others = {});
 
-  /// What is drawn into at one moment: the image with the floor's grid, and whence it is seen.
+  /// Image with the floor's grid at one moment, and its view.
   struct Picture {
     View view;
     Floor floor;  ///< in the view's camera
     Image image;
   };
-  /// Frame t of the joints; `floor` in the frame of the joints.
+  /// The panel at frame t of the joints; `floor` in the frame of the joints.
   [[nodiscard]] Picture At(int t, const Floor& floor) const;
 
   [[nodiscard]] int width() const { return backdrop_.width; }
@@ -46,10 +44,10 @@ class SidePanel {
   Image backdrop_;
 };
 
-/// A picture with another one of the same height to its right.
+/// Concatenates two pictures of the same height horizontally.
 Image Beside(const Image& left, const Image& right);
 
-/// How the estimated body is coloured.
+/// Colouring of the estimated body.
 enum class BodyColours {
   kPlain,    ///< one colour
   kParts,    ///< by chart; needs a body with parts
@@ -61,16 +59,15 @@ struct OverlayOptions {
   double alpha = 0.72;  ///< opacity of the body over the video
   BodyColours colours = BodyColours::kPlain;
   bool skeleton = false;     ///< bones between the projected landmarks
-  bool floor = true;         ///< where there is no video: a floor with the body's shadow (pinhole only)
+  bool floor = true;         ///< without video: a floor with the body's shadow (pinhole only)
   bool side_view = false;    ///< a second panel to the right, as high as the image
-  bool side_follows = true;  ///< the side camera moves along with the person; false: it sees the whole clip's space
+  bool side_follows = true;  ///< the side camera follows the person; false: it sees the whole clip's space
   double side_yaw_deg = 90;  ///< 90: from the person's left when it faces the camera
   double side_elevation_deg = 8;
-  double side_aspect = 0.75;  ///< width of the panel / its height
-  Eigen::Vector3d up_in_camera =
-      -Eigen::Vector3d::UnitY();  ///< for the floor and the side view, when the camera is tilted
-  double min_confidence = 0.1;    ///< detections below are not drawn
-  int num_threads = 1;            ///< the picture is the same for any number
+  double side_aspect = 0.75;                                 ///< width of the panel / its height
+  Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();  ///< for the floor and the side view of a tilted camera
+  double min_confidence = 0.1;                               ///< detections below are not drawn
+  int num_threads = 1;                                       ///< the picture is the same for any number
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;
   /// The view of the side panel beside a picture of this height.
@@ -79,10 +76,10 @@ struct OverlayOptions {
 
 /// Height of the letters of an overlay's captions, pixels.
 double OverlayCaptionHeight(int image_height);
-/// Samples a pixel along x and y of bodies in an overlay: large pictures need fewer to look smooth.
+/// Samples per pixel along x and y for bodies in an overlay; fewer for large pictures.
 int OverlaySamples(int image_height);
 
-/// What one picture shows besides the body. Pointers are borrowed and may be null.
+/// Content of one picture besides the body. Pointers are borrowed and may be null.
 struct OverlayFrame {
   const Image* background = nullptr;           ///< of the camera's size; null: a plain backdrop
   const KeypointSequence* detected = nullptr;  ///< drawn as discs, the track's own landmarks as rings
@@ -92,8 +89,8 @@ struct OverlayFrame {
 /// Not for use by two threads at once; copies are.
 class OverlayRenderer {
  public:
-  /// Borrows everything. `reference`, when given, is the true track: it stands beside the estimate in the side view.
-  /// Throws std::invalid_argument when the track has no image size or no frame, or options are out of range.
+  /// Borrows everything. `reference` (may be null): the true track, drawn beside the estimate in the side view. Throws
+  /// std::invalid_argument when the track has no image size or no frame, or options are out of range.
   OverlayRenderer(const BodyModel& body, const Track& track, const OverlayOptions& options = {},
                   const Track* reference = nullptr);
 
@@ -101,7 +98,7 @@ class OverlayRenderer {
   [[nodiscard]] int width() const { return track_.camera.width + (side_ ? side_->width() : 0); }
   [[nodiscard]] int height() const { return track_.camera.height; }
 
-  /// Frames that the track has lost show no body. Throws std::invalid_argument when `frame` is not in the track or the
+  /// Renders a frame; lost frames show no body. Throws std::invalid_argument when `frame` is not in the track or the
   /// background has another size than the camera.
   [[nodiscard]] Image Render(int frame, const OverlayFrame& what) const;
 
@@ -118,17 +115,17 @@ class OverlayRenderer {
   std::optional<SidePanel> side_;
   Image backdrop_;
   std::optional<Floor> floor_;  ///< the track's frame
-  mutable MeshDrawer drawer_;   ///< memory used again
+  mutable MeshDrawer drawer_;   ///< reuses its memory
 };
 
-/// The pose of frame t as its camera has it; nothing when the frame is lost.
+/// The pose of frame t in its camera frame; empty when the frame is lost.
 std::optional<BodyPose> PoseInCamera(const BodyModel& body, const Track& track, int frame);
 
-/// A floor of the track's frame as the camera of frame t has it.
+/// Transforms a floor from the track's frame to the camera of frame t.
 Floor FloorInCamera(const Floor& floor, const Track& track, int frame);
 
-/// The body of frame t of a track, V×3 in the track's frame (the camera's, or the scene of one that moves); empty when
-/// the frame is lost.
+/// The body of frame t of a track, V×3 in the track's frame (camera frame, or scene frame of a moving camera); empty
+/// when the frame is lost.
 MatrixX3d TrackVertices(const BodyModel& body, const Track& track, int frame);
 
 }  // namespace bodyloom

@@ -108,7 +108,7 @@ Colour SideColour(const std::string& a, const std::string& b) {
   return left ? kLeftColour : kRightColour;
 }
 
-/// False for points that are missing, too weak, or so far outside that OpenCV's fixed point would overflow.
+/// False for points that are missing, below the confidence, or so far outside that OpenCV's fixed point would overflow.
 bool IsDrawn(const DrawnKeypoints& keypoints, int k) {
   const auto p = keypoints.pixels.row(k);
   if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e5) return false;
@@ -127,7 +127,7 @@ void CheckSizes(const DrawnKeypoints& keypoints) {
                  "keypoints: ", n, " names, ", keypoints.confidence.size(), " confidences");
 }
 
-/// Draws opaquely on a copy of the touched box and blends it back.
+/// Draws opaquely on a copy of the affected box and blends it back.
 template <typename Draw>
 void Blend(const cv::Rect& touched, double alpha, Image* image, const Draw& draw) {
   cv::Mat whole = MatOf(image);

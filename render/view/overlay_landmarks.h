@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The landmarks of an overlay: those detected as discs, the body's own as rings or as a skeleton, and lines between
-/// the two, so that residuals can be seen.
+/// Draws the landmarks of an overlay: detected ones as discs, the body's as rings or a skeleton, and lines between the
+/// two that show residuals.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@
 
 namespace bodyloom {
 
-/// A body as one frame's camera sees it.
+/// A body in the camera of one frame.
 struct BodyInView {
   const BodyModel* body = nullptr;
   Eigen::VectorXd betas;
@@ -30,17 +30,17 @@ struct OverlayLandmarksStyle {
   double min_confidence = 0.1;  ///< detections at or below are not drawn
 };
 
-/// Landmarks go by names; those that the body does not know are left out. `detected` may be null: then only the
-/// skeleton is drawn, with COCO's landmarks. Sizes go by the image's height. Throws std::invalid_argument when `frame`
-/// is not among the detections.
+/// Landmarks are matched by name; those that the body lacks are left out. `detected` may be null: then only the
+/// skeleton is drawn, with COCO's landmarks. Sizes scale with the image's height. Throws std::invalid_argument when
+/// `frame` is not among the detections.
 void DrawOverlayLandmarks(const BodyInView& seen, const KeypointSequence* detected, int frame,
                           const OverlayLandmarksStyle& style, Image* image);
 
-/// The key to these marks.
+/// Caption lines that explain the marks.
 std::vector<CaptionLine> LandmarkLegend(bool skeleton);
 
-// Draws 2D landmarks and the bones between them. Landmarks go by the body's names (left_elbow, …); a bone is drawn
-// when both its ends are there. Left is warm, right is cool.
+// Draws 2D landmarks and the bones between them. Landmarks have the body's names (left_elbow, …); a bone is drawn if
+// both its ends are present. Left is warm, right is cool.
 
 /// Landmarks of one frame: names and n×2 pixels; a row that is not finite is missing. `confidence` has n entries or
 /// none (all 1); points at or below min_confidence are left out.
@@ -60,7 +60,7 @@ struct KeypointStyle {
 
 void DrawKeypoints(const DrawnKeypoints& keypoints, const KeypointStyle& style, Image* image);
 
-/// Thin lines from each detected point to its projected twin (same names and order), so that errors can be seen.
+/// Draws thin lines from each detected point to its projected counterpart (same names and order) to show errors.
 void DrawResiduals(const DrawnKeypoints& detected, const DrawnKeypoints& projected, double width_px, Image* image);
 
 }  // namespace bodyloom

@@ -41,7 +41,7 @@ std::vector<double> MomentsOf(const std::vector<PersonInOverlay>& people) {
   return times;
 }
 
-/// The person's frame at each of the moments; −1 where there is none.
+/// The person's frame at each of the moments; −1: none.
 std::vector<int> FramesAt(const std::vector<double>& moments, const std::vector<double>& own) {
   std::vector<int> frames(moments.size(), -1);
   for (size_t t = 0; t < own.size(); ++t) {
@@ -50,7 +50,7 @@ std::vector<int> FramesAt(const std::vector<double>& moments, const std::vector<
   return frames;
 }
 
-/// Joints of all who are there, below their common centre (the mean of the pelvises), which a camera can follow.
+/// Joints of all people present, preceded by their common centre (the mean of the pelvises) for the camera to follow.
 std::vector<MatrixX3d> JointsTogether(const std::vector<PersonInOverlay>& people,
                                       const std::vector<std::vector<int>>& frames, size_t num_moments) {
   std::vector<std::vector<MatrixX3d>> joints;

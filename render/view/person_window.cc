@@ -16,18 +16,18 @@ namespace {
 
 int RoundedUp(double size, int multiple) { return static_cast<int>(std::ceil(size / multiple - 1e-9)) * multiple; }
 
-/// Moves [corner, corner + size) by as little as it takes to hold [low, high].
+/// Moves [corner, corner + size) by the minimum needed to contain [low, high].
 int MovedToHold(int corner, int size, double low, double high) {
   if (corner + size < high) corner = static_cast<int>(std::ceil(high)) - size;
   return std::min(corner, static_cast<int>(std::floor(low)));
 }
 
-void CheckPicture(const Image& picture, const PersonWindow& window, int t) {
+void CheckImage(const Image& image, const PersonWindow& window, int t) {
   const auto fits = [](int size, double scale, int shrunk) { return std::abs(size * scale - shrunk) < 1e-6 * shrunk; };
-  BODYLOOM_CHECK(fits(picture.width, window.scale_x, window.picture_width) &&
-                     fits(picture.height, window.scale_y, window.picture_height),
-                 "person window: a picture of ", picture.width, "x", picture.height, ", planned for one of ",
-                 window.picture_width / window.scale_x, "x", window.picture_height / window.scale_y);
+  BODYLOOM_CHECK(
+      fits(image.width, window.scale_x, window.image_width) && fits(image.height, window.scale_y, window.image_height),
+      "person window: an image of ", image.width, "x", image.height, ", planned for one of ",
+      window.image_width / window.scale_x, "x", window.image_height / window.scale_y);
   BODYLOOM_CHECK(t >= 0 && t < static_cast<int>(window.corner.size()), "person window: frame ", t, " of ",
                  window.corner.size());
 }
@@ -36,11 +36,11 @@ void CheckPicture(const Image& picture, const PersonWindow& window, int t) {
 
 PersonWindow PlanPersonWindow(const std::vector<PersonExtent>& extents, int image_width, int image_height,
                               const PersonWindowOptions& options) {
-  BODYLOOM_CHECK(image_width > 0 && image_height > 0, "person window: a picture of ", image_width, "x", image_height);
+  BODYLOOM_CHECK(image_width > 0 && image_height > 0, "person window: an image of ", image_width, "x", image_height);
   BODYLOOM_CHECK(options.multiple > 0 && options.max_side >= options.multiple && options.margin >= 0,
                  "person window: max_side ", options.max_side, ", multiple ", options.multiple, ", margin ",
                  options.margin);
-  // What the camera does not see cannot be learned or shown: extents end at the picture.
+  // Extents are clipped to the image.
   const Vector2d last(image_width - 1, image_height - 1);
   std::vector<PersonExtent> grown;
   Vector2d largest = Vector2d::Zero();
@@ -58,10 +58,10 @@ PersonWindow PlanPersonWindow(const std::vector<PersonExtent>& extents, int imag
   const int fitting_side = options.max_side / options.multiple * options.multiple;
   const double scale = options.scale > 0 ? options.scale : std::min(1.0, fitting_side / largest.maxCoeff());
   const int side = options.scale > 0 ? std::numeric_limits<int>::max() : fitting_side;
-  window.picture_width = std::max(1, static_cast<int>(std::lround(scale * image_width)));
-  window.picture_height = std::max(1, static_cast<int>(std::lround(scale * image_height)));
-  window.scale_x = static_cast<double>(window.picture_width) / image_width;
-  window.scale_y = static_cast<double>(window.picture_height) / image_height;
+  window.image_width = std::max(1, static_cast<int>(std::lround(scale * image_width)));
+  window.image_height = std::max(1, static_cast<int>(std::lround(scale * image_height)));
+  window.scale_x = static_cast<double>(window.image_width) / image_width;
+  window.scale_y = static_cast<double>(window.image_height) / image_height;
   window.width = std::min(side, RoundedUp(largest.x() * window.scale_x, options.multiple));
   window.height = std::min(side, RoundedUp(largest.y() * window.scale_y, options.multiple));
 
@@ -69,7 +69,7 @@ PersonWindow PlanPersonWindow(const std::vector<PersonExtent>& extents, int imag
   Vector2i corner(0, 0);
   for (const PersonExtent& extent : grown) {
     if (!extent.empty()) {
-      // Pixel i of the picture covers [i, i + 1) here.
+      // Pixel i of the image covers [i, i + 1) here.
       const Vector2d scales(window.scale_x, window.scale_y);
       const Vector2d low = extent.min.cwiseProduct(scales);
       const Vector2d high = (extent.max + Vector2d::Ones()).cwiseProduct(scales);
@@ -99,25 +99,25 @@ Camera CameraInWindow(const Camera& camera, const PersonWindow& window, int t) {
   return result;
 }
 
-Image CutWindow(const Image& picture, const PersonWindow& window, int t) {
-  CheckPicture(picture, window, t);
+Image CutWindow(const Image& image, const PersonWindow& window, int t) {
+  CheckImage(image, window, t);
   const Vector2i& corner = window.corner[t];
   Image cut(window.width, window.height);
-  const bool same = window.picture_width == picture.width && window.picture_height == picture.height;
-  Paste(same ? picture : Resized(picture, window.picture_width, window.picture_height), -corner.x(), -corner.y(), &cut);
+  const bool same = window.image_width == image.width && window.image_height == image.height;
+  Paste(same ? image : Resized(image, window.image_width, window.image_height), -corner.x(), -corner.y(), &cut);
   return cut;
 }
 
 std::vector<uint8_t> CutLabels(const Image& labels, const PersonWindow& window, int t) {
-  CheckPicture(labels, window, t);
+  CheckImage(labels, window, t);
   std::vector<uint8_t> cut(static_cast<size_t>(window.width) * window.height, 0);
   for (int y = 0; y < window.height; ++y) {
     const int shrunk_y = y + window.corner[t].y();
-    if (shrunk_y < 0 || shrunk_y >= window.picture_height) continue;
+    if (shrunk_y < 0 || shrunk_y >= window.image_height) continue;
     const int from_y = std::min(labels.height - 1, static_cast<int>((shrunk_y + 0.5) / window.scale_y));
     for (int x = 0; x < window.width; ++x) {
       const int shrunk_x = x + window.corner[t].x();
-      if (shrunk_x < 0 || shrunk_x >= window.picture_width) continue;
+      if (shrunk_x < 0 || shrunk_x >= window.image_width) continue;
       const int from_x = std::min(labels.width - 1, static_cast<int>((shrunk_x + 0.5) / window.scale_x));
       cut[static_cast<size_t>(y) * window.width + x] = labels.pixel(from_x, from_y)[0];
     }

@@ -26,9 +26,9 @@ void FindContour(const ContourRow& row, float step_m, bool linear, int8_t* mask)
   const auto find = [&](const float* here, const float* const* neighbours, int8_t* to) HWY_ATTR {
     const VF at = hn::LoadU(d, here), step = hn::Set(d, step_m);
     const VF limit = linear ? hn::Sub(at, step) : hn::Div(at, hn::Add(hn::Set(d, 1.0F), hn::Mul(step, at)));
-    VF least = hn::LoadU(d, neighbours[0]);
-    for (int k = 1; k < 8; ++k) least = hn::Min(least, hn::LoadU(d, neighbours[k]));
-    hn::StoreU(hn::DemoteTo(db, hn::VecFromMask(di, hn::RebindMask(di, hn::Lt(least, limit)))), db, to);
+    VF minimum = hn::LoadU(d, neighbours[0]);
+    for (int k = 1; k < 8; ++k) minimum = hn::Min(minimum, hn::LoadU(d, neighbours[k]));
+    hn::StoreU(hn::DemoteTo(db, hn::VecFromMask(di, hn::RebindMask(di, hn::Lt(minimum, limit)))), db, to);
   };
   int i = 0;
   for (; i + N <= row.count; i += N) {
@@ -56,8 +56,8 @@ void ShadePixels(const ShadedRow& row) {
   const auto dot = [&](VF x, VF y, VF z, const float(&v)[3]) HWY_ATTR {
     return hn::Add(hn::Add(hn::Mul(x, hn::Set(d, v[0])), hn::Mul(y, hn::Set(d, v[1]))), hn::Mul(z, hn::Set(d, v[2])));
   };
-  // Unit directions, camera frame (the eye looks along +z): from the upper left, behind the viewer; from the right; and
-  // half way between the first and the eye.
+  // Unit directions, camera frame (the viewer looks along +z): key light from the upper left behind the viewer, fill
+  // light from the right, and the half vector of the key light.
   static constexpr float kKey[3] = {-0.447900F, -0.646966F, -0.617106F};
   static constexpr float kFill[3] = {0.754732F, -0.050315F, -0.654101F};
   static constexpr float kHalfway[3] = {-0.249056F, -0.359747F, -0.899196F};
@@ -66,7 +66,7 @@ void ShadePixels(const ShadedRow& row) {
     const VF square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     const VF scale = hn::IfThenElse(hn::Gt(square, zero), hn::Div(one, hn::Sqrt(square)), zero);
     x = hn::Mul(x, scale), y = hn::Mul(y, scale), z = hn::Mul(z, scale);
-    const VF key = hn::Max(zero, hn::Add(half, hn::Mul(half, dot(x, y, z, kKey))));  // wraps round: no hard terminator
+    const VF key = hn::Max(zero, hn::Add(half, hn::Mul(half, dot(x, y, z, kKey))));  // wrapped: no hard terminator
     const VF fill = hn::Max(zero, dot(x, y, z, kFill));
     const VF sky = hn::Sub(half, hn::Mul(half, y));
     const VF edge = hn::Sub(one, hn::Min(one, hn::Abs(z)));

@@ -28,15 +28,14 @@ float FurtherBy(float step_m, float nearness, const Camera& camera) {
   return camera.model == CameraModel::kPinhole ? nearness / (1 + step_m * nearness) : nearness - step_m;
 }
 
-/// Interpolates vertex normals across the face under a sample. Linear on the screen: inside one face of a body that
-/// differs from the perspective-correct value by less than shading can show.
-/// For one thread; the arrays are borrowed.
+/// Interpolates vertex normals in the face at a sample, linearly on the screen: within one face of a body the
+/// difference to perspective-correct interpolation is invisible. For one thread; the arrays are borrowed.
 class NormalSampler {
  public:
   NormalSampler(const MatrixX3i& faces, const MatrixX3f& normals, const MatrixX2d& pixels)
       : faces_(faces), normals_(normals), pixels_(pixels) {}
 
-  /// Not of unit length.
+  /// Interpolated normal, not of unit length.
   Vector3f At(int face, double x, double y) {
     if (face != face_) Prepare(face);
     const Vector2f at = (Vector2d(x, y) - origin_).cast<float>();
@@ -66,8 +65,8 @@ class NormalSampler {
   Vector2f row_b_ = Vector2f::Zero(), row_c_ = Vector2f::Zero();
 };
 
-/// Finds the samples where the surface ends: the background, or something at least 4 cm further away, begins within
-/// `radius` samples. The line lies on the nearer side.
+/// Finds contour samples: those with background, or surface at least 4 cm further away, within `radius` samples. The
+/// line lies on the nearer side.
 class ContourFinder {
  public:
   ContourFinder(const VisibilityBuffer& buffer, const Camera& camera, int radius)
@@ -86,7 +85,7 @@ class ContourFinder {
                  {-diagonal, -diagonal}}};
   }
 
-  /// mask[i] ≠ 0 where the sample (begin + i, y) of the box's row y lies on the line. Background: anything.
+  /// Sets mask[i] ≠ 0 if the sample (begin + i, y) of the box's row y lies on the line. Undefined on the background.
   void FindRow(int y, int begin, int end, int8_t* mask) const {
     const PixelBox& box = buffer_.box();
     // Columns whose neighbours all lie in the box.
@@ -98,7 +97,7 @@ class ContourFinder {
     row.here = RowAt(y) + (inner_begin - box.x_begin);
     row.count = inner_end - inner_begin;
     for (size_t k = 0; k < offsets_.size(); ++k) {
-      const int j = std::clamp(y + offsets_[k][1], 0, camera_.height - 1);  // the border of the image ends no surface
+      const int j = std::clamp(y + offsets_[k][1], 0, camera_.height - 1);  // no contour at the image's border
       row.neighbours[k] = RowAt(j) + (inner_begin + offsets_[k][0] - box.x_begin);
     }
     if (row.count > 0) {
@@ -133,13 +132,13 @@ class ContourFinder {
   std::array<std::array<int, 2>, 8> offsets_;
 };
 
-/// Points of a row of pixels at which light is computed, each for a share of its pixel.
+/// Points of a row of pixels at which shading is computed, each for a share of its pixel.
 struct ShadingPoints {
   int size = 0;
   std::vector<float> nx, ny, nz, blue, green, red;
   std::vector<int> column;
   std::vector<float> cover;  ///< opacity × share of the pixel
-  std::vector<Colour> ink;   ///< what a contour mixes in
+  std::vector<Colour> ink;   ///< colour of the contour blended in
   std::vector<uint8_t> on_contour;
   explicit ShadingPoints(int capacity) : column(capacity), cover(capacity), ink(capacity), on_contour(capacity) {
     for (auto* values : {&nx, &ny, &nz, &blue, &green, &red}) values->resize(capacity + shade_internal::kLanes);
@@ -170,7 +169,7 @@ class MeshPainter {
   void DrawRows(int y_begin, int y_end, Image* image) const {
     Scratch scratch(box_.width(), n_);
     NormalSampler normals(faces_, *normals_, pixels_);
-    // The number of samples known to the compiler: nearly half of the time is spent looking at them.
+    // The number of samples as a template argument: nearly half of the time is spent in loops over them.
     const auto draw_row = n_ == 1   ? &MeshPainter::DrawRow<1>
                           : n_ == 2 ? &MeshPainter::DrawRow<2>
                           : n_ == 3 ? &MeshPainter::DrawRow<3>
@@ -196,7 +195,7 @@ class MeshPainter {
     bool is_smooth = true;  ///< all covered, one colour, no line, no step in depth
   };
 
-  /// Columns of the box, [begin, end), outside of which the pixel row sees nothing.
+  /// Columns of the box, [begin, end), outside of which the pixel row is background.
   void FindSpan(int y, int* begin, int* end) const {
     const PixelBox& box = buffer_.box();
     *begin = box.x_end, *end = box.x_begin;
@@ -318,7 +317,7 @@ class MeshPainter {
   int n_;
   Camera fine_;
   const VisibilityBuffer& buffer_;
-  const MatrixX3f* normals_ = nullptr;  ///< null: nothing is in view
+  const MatrixX3f* normals_ = nullptr;  ///< null: mesh not in view
   MatrixX2d pixels_;
   std::optional<ContourFinder> contour_;
   PixelBox box_;

@@ -17,22 +17,22 @@ struct MeshStyle {
   Colour colour = kBodyColour;
   std::vector<Colour> face_colours = {};  ///< F colours instead of `colour`, or empty
   double alpha = 1;                       ///< opacity of the surface
-  double contour_px = 1.4;     ///< width of the line along silhouettes and where a limb hides another; 0: none
-  double contour_alpha = 0.9;  ///< opacity of that line
-  int samples = 3;             ///< samples a pixel along x and y
-  int num_threads = 1;         ///< the picture is the same for any number
+  double contour_px = 1.4;                ///< width of the line along silhouettes and occlusions between limbs; 0: none
+  double contour_alpha = 0.9;             ///< opacity of that line
+  int samples = 3;                        ///< per pixel along x and y
+  int num_threads = 1;                    ///< the image is the same for any number
 };
 
-/// Draws meshes (vertices in the camera frame, metres) as `camera` sees them onto an image of the camera's size. Lit
-/// from the upper left of the viewer. Only the mesh's box is touched. Where all samples of a pixel see one smooth
-/// stretch of surface in one colour, light is computed once, in its middle.
+/// Draws meshes (vertices in the camera frame, metres) seen by `camera` onto an image of the camera's size. Lit from
+/// the upper left of the viewer. Only the mesh's box is processed. Where all samples of a pixel show one smooth surface
+/// in one colour, shading is computed once, at its centre.
 ///
-/// Keeps its memory between pictures: allocating 20 MB for each costs as much as drawing. Not for use by two threads
-/// at once.
+/// Keeps its memory between images: allocating 20 MB per image takes as long as drawing. Not for use by two threads at
+/// once.
 class MeshDrawer {
  public:
   MeshDrawer() = default;
-  /// A copy draws in memory of its own, for another thread.
+  /// A copy has its own memory, for another thread.
   MeshDrawer(const MeshDrawer&) : MeshDrawer() {}
   MeshDrawer& operator=(const MeshDrawer&) { return *this; }
   ~MeshDrawer() = default;
@@ -46,7 +46,7 @@ class MeshDrawer {
   VertexNormalsOfMesh normals_;
 };
 
-/// The same for a single picture.
+/// As MeshDrawer::Draw, for a single image.
 void DrawMesh(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Camera& camera, const MeshStyle& style,
               Image* image);
 

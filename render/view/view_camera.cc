@@ -39,7 +39,7 @@ MatrixX3d View::Apply(const MatrixX3d& points) const {
 View OrbitView(const std::vector<MatrixX3d>& points, int width, int height, const OrbitOptions& options) {
   const Vector3d up = options.up_in_camera.normalized();
   const double radians = M_PI / 180;
-  // Turn the scene about `up`, stand the camera upright, then tilt it.
+  // Rotate the scene about `up`, align the camera with `up`, then tilt it.
   const Eigen::Matrix3d upright = RotationBetweenDirections(up, -Vector3d::UnitY());
   const Eigen::Matrix3d R = RotationFromAxisAngle(Vector3d(options.elevation_deg * radians, 0, 0)) * upright *
                             RotationFromAxisAngle(-options.yaw_deg * radians * up);

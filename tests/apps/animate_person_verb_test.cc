@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom animate person` with the photos that people have: a person, or one line that says what is wrong.
+// `bodyloom animate person` on typical users' photos: a person, or a one-line error.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

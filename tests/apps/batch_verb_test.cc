@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom batch` as scripts and schedulers use it: lines, table, exit codes, signals, limits, two processes at once.
+// `bodyloom batch` as used by scripts and schedulers: output, table, exit codes, signals, limits, two processes at
+// once.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -117,9 +118,9 @@ TEST_F(BatchVerb, ExitCodesTellOutcomesApart) {
   const std::string bad = "{\"id\":\"bad\",\"detections\":\"absent.json\"}\n";
   WriteManifest(Clip("a") + empty);
   CommandResult result = Batch();
-  EXPECT_EQ(result.exit_code, kExitNothingToTrack) << result.err;
+  EXPECT_EQ(result.exit_code, kExitNoPersonFound) << result.err;
   EXPECT_EQ(Statuses(result), (std::map<std::string, std::string>{{"a", "done"}, {"empty", "nothing_to_track"}}));
-  EXPECT_EQ(Batch().exit_code, kExitNothingToTrack) << "the same once it is stored";
+  EXPECT_EQ(Batch().exit_code, kExitNoPersonFound) << "the same once it is stored";
   WriteManifest(bad + empty + Clip("a"));
   result = Batch();
   EXPECT_EQ(result.exit_code, kExitFailed) << result.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom body info --check` as a user meets it, on damaged copies of the built-in body.
+// `bodyloom body info --check` on damaged copies of the built-in body.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -263,7 +263,7 @@ TEST_F(BodyCheck, FacesThatCross) {
   EXPECT_THAT(posed.out, Not(HasSubstr("at rest  ")));
   EXPECT_THAT(posed.out, HasSubstr("poses in which faces cross  1  of 4; frame 4 has the most pairs"));
   EXPECT_EQ(Check("", {"--track", Path("track.npz"), "--frames", "0:4"}).exit_code, kExitOk);
-  // What no half-edge structure holds is looked at too.
+  // Non-manifold meshes are checked too.
   BodyModelData fin = pierced;
   fin.faces.row(9000) << fin.faces(20, 0), fin.faces(20, 1), 7000;
   const CommandResult torn = Check(Save("fin.npz", fin));

@@ -14,8 +14,8 @@ TEST(CommandCallbacks, MessagesAreLines) {
   const PipelineCallbacks callbacks = CommandCallbacks(true, out);
   callbacks.Begin("tracking");
   callbacks.Update("fit", 0.5);
-  callbacks.Say("one");
-  callbacks.Say("");
+  callbacks.Message("one");
+  callbacks.Message("");
   EXPECT_EQ(out.str(), "one\n\n");
 }
 
@@ -46,9 +46,9 @@ TEST(CommandCallbacks, AnInterruptCancels) {
       {
         InstallSignalHandlers();
         const PipelineCallbacks callbacks = CommandCallbacks(true);
-        const bool before = callbacks.GoesOn("fit", 0);
+        const bool before = callbacks.ReportProgress("fit", 0);
         std::raise(SIGINT);
-        std::exit(before && !callbacks.GoesOn("fit", 0.5) ? 0 : 1);
+        std::exit(before && !callbacks.ReportProgress("fit", 0.5) ? 0 : 1);
       },
       ::testing::ExitedWithCode(0), "");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the command line promises for every verb: help, usage errors, exit codes.
+// Properties of the command line common to all verbs: help, usage errors, exit codes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

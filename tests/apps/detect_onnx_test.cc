@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom detect --pose-model`: a network in an ONNX file, and files that are none.
+// `bodyloom detect --pose-model` with an ONNX network, and with files that are not ONNX.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom metrics` as a user meets it, and the run behind it.
+// `bodyloom metrics` from the command line, and the job behind it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ class MetricsVerb : public ::testing::Test {
  protected:
   std::string Path(const std::string& name) const { return folder_ / name; }
   /// FOLDER/000000.png, … one grey picture a value.
-  std::string Pictures(const std::string& folder, const std::vector<int>& values) const {
+  std::string Images(const std::string& folder, const std::vector<int>& values) const {
     fs::create_directories(Path(folder));
     for (size_t i = 0; i < values.size(); ++i) {
       char name[32];
@@ -68,8 +68,8 @@ class MetricsVerb : public ::testing::Test {
 
 double PsnrOfOffset(double offset) { return 20 * std::log10(255 / offset); }
 
-TEST_F(MetricsVerb, PicturesByName) {
-  const std::string truth = Pictures("truth", {100, 100, 100, 100}), result = Pictures("result", {110, 120, 100, 130});
+TEST_F(MetricsVerb, ImagesByName) {
+  const std::string truth = Images("truth", {100, 100, 100, 100}), result = Images("result", {110, 120, 100, 130});
   const CommandResult run =
       Run({"--truth", truth, "--result", result, "--json", Path("m.json"), "--csv", Path("m.csv"), "--quiet"});
   ASSERT_EQ(run.exit_code, kExitOk) << run.err;
@@ -102,7 +102,7 @@ TEST_F(MetricsVerb, AnyNumberOfThreadsGivesTheSameBytes) {
   std::vector<int> values;
   values.reserve(13);
   for (int i = 0; i < 13; ++i) values.push_back(90 + 3 * i);
-  const std::string truth = Pictures("truth", std::vector<int>(13, 100)), result = Pictures("result", values);
+  const std::string truth = Images("truth", std::vector<int>(13, 100)), result = Images("result", values);
   for (const char* threads : {"1", "2", "5"}) {
     ASSERT_EQ(Run({"--truth", truth, "--result", result, "--csv", Path(threads), "--threads", threads}).exit_code, 0);
     EXPECT_EQ(Contents(Path(threads)), Contents(Path("1")));
@@ -110,7 +110,7 @@ TEST_F(MetricsVerb, AnyNumberOfThreadsGivesTheSameBytes) {
 }
 
 TEST_F(MetricsVerb, MasksAndPresets) {
-  const std::string truth = Pictures("truth", {100}), result = Pictures("result", {100});
+  const std::string truth = Images("truth", {100}), result = Images("result", {100});
   Image half = Grey(100), mask = Grey(0);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth / 2; ++x) {
@@ -137,11 +137,11 @@ TEST_F(MetricsVerb, MasksAndPresets) {
 }
 
 TEST_F(MetricsVerb, SinglePersonDatasets) {
-  Pictures("truth/images", {10, 20});
-  Pictures("result/images", {12, 20});
-  Pictures("truth/labels", {1, 1});
-  Pictures("truth/normals", {255, 255});  // all along (1, 1, 1), too long for a normal
-  Pictures("result/labels", {1, 1});
+  Images("truth/images", {10, 20});
+  Images("result/images", {12, 20});
+  Images("truth/labels", {1, 1});
+  Images("truth/normals", {255, 255});  // all along (1, 1, 1), too long for a normal
+  Images("result/labels", {1, 1});
   Image labels = Grey(1);
   for (int x = 0; x < kWidth; ++x) labels.pixel(x, 0)[0] = labels.pixel(x, 0)[1] = labels.pixel(x, 0)[2] = 6;
   for (int x = 0; x < kWidth; ++x) labels.pixel(x, 1)[0] = labels.pixel(x, 1)[1] = labels.pixel(x, 1)[2] = 0;
@@ -162,7 +162,7 @@ TEST_F(MetricsVerb, SinglePersonDatasets) {
   EXPECT_EQ(json["only_one_side"], nlohmann::json::array({"normals"}));
 
   WriteImage(Path("truth/normals/000000.png"), Image(kWidth, kHeight, {128, 128, 0}));
-  Pictures("result/normals", {0, 0});
+  Images("result/normals", {0, 0});
   WriteImage(Path("result/normals/000000.png"), Image(kWidth, kHeight, {128, 0, 128}));
   ASSERT_EQ(Run({"--truth", Path("truth"), "--result", Path("result"), "--json", Path("m.json")}).exit_code, kExitOk);
   const auto normals = nlohmann::json::parse(Contents(Path("m.json")))["kinds"]["normals"]["metrics"];
@@ -190,13 +190,13 @@ TEST_F(MetricsVerb, Videos) {
   EXPECT_EQ(json["metrics"]["psnr_db"]["infinite"], 6);
   ExpectError({"--truth", truth, "--result", shorter}, "short.mp4: ends before frame 000004");
   ExpectError({"--truth", shorter, "--result", truth}, "short.mp4: ends before frame 000004");
-  ExpectError({"--truth", truth, "--result", Pictures("frames", {1})}, "40x30 pixels, expected 64x48");
+  ExpectError({"--truth", truth, "--result", Images("frames", {1})}, "40x30 pixels, expected 64x48");
 }
 
 TEST_F(MetricsVerb, WhatCannotBeComparedIsNamed) {
-  const std::string truth = Pictures("truth", {1, 2, 3}), result = Pictures("result", {1, 2});
-  ExpectError({"--truth", truth, "--result", result}, "result: no picture '000002'");
-  ExpectError({"--truth", result, "--result", truth}, "result: no picture '000002'");
+  const std::string truth = Images("truth", {1, 2, 3}), result = Images("result", {1, 2});
+  ExpectError({"--truth", truth, "--result", result}, "result: no image '000002'");
+  ExpectError({"--truth", result, "--result", truth}, "result: no image '000002'");
   const CommandResult common = Run({"--truth", truth, "--result", result, "--common"});
   EXPECT_EQ(common.exit_code, kExitOk) << common.err;
   EXPECT_THAT(common.out, StartsWith("images: 2 frames, 1 that one side lacks left out\n"));
@@ -205,12 +205,12 @@ TEST_F(MetricsVerb, WhatCannotBeComparedIsNamed) {
   fs::create_directories(Path("other"));
   ExpectError({"--truth", truth, "--result", Path("other")}, "other: the folder holds no images");
   WriteImage(Path("other") + "/a.png", Grey(1));
-  ExpectError({"--truth", truth, "--result", Path("other"), "--common"}, "no picture has the name of one in");
+  ExpectError({"--truth", truth, "--result", Path("other"), "--common"}, "no image has the name of one in");
   WriteImage(Path("other") + "/a.jpg", Grey(1));
-  ExpectError({"--truth", Path("other"), "--result", truth}, "a second picture of this name");
+  ExpectError({"--truth", Path("other"), "--result", truth}, "a second image of this name");
   ExpectError({"--truth", truth, "--result", Path("nowhere")}, "nowhere");
   WriteImage(result + "/000001.png", Grey(2));
-  std::ofstream(truth + "/000000.png") << "not a picture";
+  std::ofstream(truth + "/000000.png") << "not an image";
   ExpectError({"--truth", truth, "--result", result, "--common", "--json", Path("m.json")}, "000000.png: not an image");
   EXPECT_FALSE(fs::exists(Path("m.json")));
   EXPECT_EQ(Run({"--truth", truth}).exit_code, kExitUsage);

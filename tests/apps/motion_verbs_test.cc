@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `motions` and `train lifter`, as a newcomer would run them, on motions made here.
+// `motions` and `train lifter` on synthetic motions.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom animate photo` and `bodyloom animate guided` with the photos that people have: either a line that says
-// what is wrong, or a picture, and the report says what stands in for what.
+// `bodyloom animate photo` and `bodyloom animate guided` on typical users' photos: a one-line error, or an image with a
+// report of substitutes for missing inputs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/video/image_file.h"
-#include "tests/support/odd_pictures.h"
+#include "tests/support/odd_images.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"
 
@@ -31,9 +31,9 @@ class OddPhotos : public ::testing::Test {
                     "1", "--views", "1", "--frames", "2", "--test-share", "0.5", "--size", "96", "--threads", "1"});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     const std::string person = scratch_ / "people/p000/a0_v0";
-    picture_ = ReadImage(person + "/images/000000.png");
+    image_ = ReadImage(person + "/images/000000.png");
     track_ = ReadTrack(person + "/track.npz");
-    WriteImage(File("photo.png"), picture_);
+    WriteImage(File("photo.png"), image_);
     WriteTrack(File("me.npz"), track_);
   }
   /// A run of `system`, one step old.
@@ -84,8 +84,8 @@ class OddPhotos : public ::testing::Test {
   }
   /// The left part of the picture, with the track of it.
   void WriteCut(int width) {
-    Image cut(width, picture_.height);
-    Paste(picture_, 0, 0, &cut);
+    Image cut(width, image_.height);
+    Paste(image_, 0, 0, &cut);
     WriteImage(File("half.png"), cut);
     Track track = track_;
     track.camera.width = width;
@@ -93,23 +93,23 @@ class OddPhotos : public ::testing::Test {
   }
   /// The file cut off, a text, another shape, another place.
   void RefusesWhatShowsNothing() {
-    WriteImage(File("whole.jpg"), picture_);
+    WriteImage(File("whole.jpg"), image_);
     const std::string jpeg = ReadFileBytes(File("whole.jpg"), 1 << 24);
     for (const size_t part : {2, 3, 10}) {
       WriteBytes(File("cut.jpg"), jpeg.substr(0, jpeg.size() * (part - 1) / part));
-      Refuses("cut.jpg", "cut.jpg", "ends before its picture does");
+      Refuses("cut.jpg", "cut.jpg", "ends before its image does");
     }
     WriteBytes(File("text.jpg"), "a text\n");
     Refuses("text.jpg", "text.jpg", "not an image that can be decoded");
-    WriteImage(File("wide.png"), Resized(picture_, 144, 96));
-    Refuses("wide.png", "wide.png has 144x96", "made for pictures of 96x96");
+    WriteImage(File("wide.png"), Resized(image_, 144, 96));
+    Refuses("wide.png", "wide.png has 144x96", "made for images of 96x96");
     Track away = track_;
     away.motion.trans.col(0).array() += 30;
     WriteTrack(File("away.npz"), away);
-    Refuses("photo.png", "away.npz: its body lies outside", "is it this picture's track?", {}, "away.npz");
+    Refuses("photo.png", "away.npz: its body lies outside", "is it this image's track?", {}, "away.npz");
     away.motion.trans = -track_.motion.trans;
     WriteTrack(File("behind.npz"), away);
-    Refuses("photo.png", "behind.npz", "is it this picture's track?", {}, "behind.npz");
+    Refuses("photo.png", "behind.npz", "is it this image's track?", {}, "behind.npz");
     Track other = track_;
     other.motion.body = "another";
     WriteTrack(File("other.npz"), other);
@@ -120,7 +120,7 @@ class OddPhotos : public ::testing::Test {
 
   ScratchFolder scratch_;
   std::string system_;
-  Image picture_;
+  Image image_;
   Track track_;
 };
 
@@ -129,24 +129,24 @@ TEST_F(OddPhotos, AreTakenByThePhotoRendererAndNamed) {
   const std::vector<std::string> own = {"--background", "photo"};
   Takes("photo.png", "no labels: the outline is found by GrabCut");
   EXPECT_THAT(Animate("photo.png").out, Not(HasSubstr("grey-scale")));
-  WriteGreyPng(File("grey.png"), picture_);
+  WriteGreyPng(File("grey.png"), image_);
   Takes("grey.png", "grey-scale", own);
-  WriteDeepPng(File("deep.png"), picture_);
+  WriteDeepPng(File("deep.png"), image_);
   Takes("deep.png", "16 bits a channel");
   WriteBytes(File("cmyk.jpg"), FlatJpeg(12, 12, 4, [&](int x, int y, int c) {
-               return c < 3 ? picture_.pixel(8 * x + 4, 8 * y + 4)[2 - c] : uint8_t{255};
+               return c < 3 ? image_.pixel(8 * x + 4, 8 * y + 4)[2 - c] : uint8_t{255};
              }));
   Takes("cmyk.jpg", "CMYK");
   const Image labels = ReadImage(scratch_ / "people/p000/a0_v0/labels/000000.png");
   std::vector<uint8_t> alpha;
   for (size_t i = 0; i < labels.bgr.size(); i += 3) alpha.push_back(labels.bgr[i] != 0 ? 255 : 0);
-  WriteTransparentPng(File("alpha.png"), picture_, alpha);
+  WriteTransparentPng(File("alpha.png"), image_, alpha);
   Takes("alpha.png", "no labels: the outline is its transparency's", own);
-  WriteImage(File("large.png"), Resized(picture_, 192, 192));
+  WriteImage(File("large.png"), Resized(image_, 192, 192));
   Takes("large.png", "192x192 pixels: resized to the 96x96 of its track");
   WriteCut(48);
   Takes("half.png", "no labels", own, "half.npz");
-  EXPECT_THAT(Animate("half.png", own, "half.npz").out, HasSubstr("% of the body lies outside the picture"));
+  EXPECT_THAT(Animate("half.png", own, "half.npz").out, HasSubstr("% of the body lies outside the image"));
 }
 
 TEST_F(OddPhotos, AreRefusedByThePhotoRendererWhereNothingCanBeDone) {
@@ -158,7 +158,7 @@ TEST_F(OddPhotos, AreRefusedByThePhotoRendererWhereNothingCanBeDone) {
   Refuses("photo.png", "--parts hat", "1 to 24", {"--garment-from", other, "--parts", "hat"}, "me.npz", 2);
   // A picture of which the feet are cut off lends no shoes.
   Image head(96, 40);
-  Paste(picture_, 0, 0, &head);
+  Paste(image_, 0, 0, &head);
   WriteImage(File("head.png"), head);
   Track track = track_;
   track.camera.height = 40;
@@ -172,7 +172,7 @@ TEST_F(OddPhotos, AreRefusedByThePhotoRendererWhereNothingCanBeDone) {
 
 TEST_F(OddPhotos, AreTakenOrRefusedByThePoseGuidedRenderer) {
   Train("guided");
-  WriteGreyPng(File("grey.png"), picture_);
+  WriteGreyPng(File("grey.png"), image_);
   Takes("photo.png", "no labels: the outline is found by GrabCut",
         {"--views", File("grey.png") + ":" + File("me.npz")});
   EXPECT_THAT(Animate("photo.png", {"--views", File("grey.png") + ":" + File("me.npz")}).out,

@@ -10,7 +10,7 @@
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_reader.h"
 #include "tests/support/paths.h"
-#include "tests/support/random_picture_unet.h"
+#include "tests/support/random_image_unet.h"
 #include "tests/support/real_video.h"
 #include "tests/support/run_command.h"
 #include "tests/support/scratch_folder.h"

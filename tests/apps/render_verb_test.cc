@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bodyloom render` as a user meets it, on a short clip made once.
+// `bodyloom render` from the command line, on a short clip made once.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -114,7 +114,7 @@ TEST_F(RenderVerb, EveryKindBecomesAVideoAndAContactSheet) {
     EXPECT_EQ(video.Skip(1000), kFrames) << kind;
     more[3] = Out(kind + ".png");
     const CommandResult result = RunWell(more);
-    EXPECT_THAT(result.out, HasSubstr("12 pictures of 160x120\n"));
+    EXPECT_THAT(result.out, HasSubstr("12 images of 160x120\n"));
     const Image sheet = ReadImage(Out(kind + ".png"));
     EXPECT_GT(sheet.width, 3 * 360) << kind;
     EXPECT_GT(sheet.height, 3 * 360);
@@ -261,7 +261,7 @@ TEST_F(RenderVerb, ATrackWithoutAnyBodyHasNoOtherSide) {
 TEST_F(RenderVerb, AVideoThatIsTooShortOrTooLongIsSaidSo) {
   const std::string shorter = VideoOf(10);
   CommandResult result = RunWell({"--what", "overlay", "--video", shorter, "--out", Out("o.mp4")});
-  EXPECT_THAT(result.out, HasSubstr("\n4 of 14 pictures have no video frame at their time"));
+  EXPECT_THAT(result.out, HasSubstr("\n4 of 14 images have no video frame at their time"));
   VideoReader reader(Out("o.mp4"));
   Image image;
   reader.Skip(9);
@@ -369,7 +369,7 @@ TEST_F(RenderVerb, FilesThatCannotBeUsedAreNamed) {
   Track track = ReadTrack(Clip("truth.npz"));
   track.camera.width = track.camera.height = 0;
   WriteTrack(Out("sizeless.npz"), track);
-  expect(parts, "image_size is 0x0, expected the size of the pictures", Out("sizeless.npz"));
+  expect(parts, "image_size is 0x0, expected the size of the images", Out("sizeless.npz"));
   RunWell({"--what", "overlay", "--video", Clip("clip.mp4"), "--out", Out("from_video.png")}, Out("sizeless.npz"));
 }
 

@@ -103,19 +103,19 @@ TEST(SynthPersonVerb, TheSamePersonInAnotherLight) {
 
 TEST(SynthPersonVerb, TheSameCutOfAnotherStuff) {
   const ScratchFolder scratch;
-  const auto make = [&](const std::string& stuff) {
+  const auto make = [&](const std::string& material) {
     const CommandResult result = RunCommand({"synth-person", "--motion", "demo", "--first", "40", "--frames", "1",
-                                             "--out", scratch / stuff, "--size", "64", "--stuff", stuff});
+                                             "--out", scratch / material, "--size", "64", "--material", material});
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    return SinglePersonDataset(scratch / stuff);
+    return SinglePersonDataset(scratch / material);
   };
   const SinglePersonDataset cotton = make("cotton"), silk = make("silk");
   EXPECT_FALSE(cotton.Read(0).labels == silk.Read(0).labels);
   EXPECT_TRUE(cotton.Read(0).iuv == silk.Read(0).iuv) << "the body is the same";
-  EXPECT_THAT(silk.info().command, HasSubstr("--stuff silk"));
-  EXPECT_THAT(cotton.info().command, Not(HasSubstr("--stuff")));
+  EXPECT_THAT(silk.info().command, HasSubstr("--material silk"));
+  EXPECT_THAT(cotton.info().command, Not(HasSubstr("--material")));
   const CommandResult other =
-      RunCommand({"synth-person", "--motion", "demo", "--out", scratch / "p", "--stuff", "tin"});
+      RunCommand({"synth-person", "--motion", "demo", "--out", scratch / "p", "--material", "tin"});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("tin not in {cotton,silk,denim}"));
 }
@@ -181,7 +181,7 @@ TEST(SynthPeopleVerb, WritesASetAndASheet) {
       RunCommand({"synth-people", "--motions", "demo", "--out", scratch / "people", "--people", "2", "--actions", "1",
                   "--views", "2", "--frames", "2", "--size", "64", "--sheet", scratch / "sheet.png"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("8 pictures of 2 people"));
+  EXPECT_THAT(result.out, HasSubstr("8 images of 2 people"));
   const MultiPersonDataset set = ReadMultiPersonDataset(scratch / "people");
   EXPECT_EQ(set.people.size(), 2U);
   EXPECT_THAT(set.command, HasSubstr("--every 6"));
@@ -195,8 +195,8 @@ TEST(SynthPeopleVerb, DressesPeopleAsTheyDressEveryDay) {
                        "--views", "1", "--frames", "1", "--size", "64", "--clothes", clothes});
   };
   for (const char* clothes : {"patterned", "everyday"}) ASSERT_EQ(make(clothes, clothes).exit_code, 0) << clothes;
-  const std::string picture = "p000/a0_v0/images/000000.png";
-  EXPECT_FALSE(ReadImage(scratch / ("patterned/" + picture)).bgr == ReadImage(scratch / ("everyday/" + picture)).bgr);
+  const std::string image = "p000/a0_v0/images/000000.png";
+  EXPECT_FALSE(ReadImage(scratch / ("patterned/" + image)).bgr == ReadImage(scratch / ("everyday/" + image)).bgr);
   EXPECT_THAT(ReadMultiPersonDataset(scratch / "everyday").command, HasSubstr("--clothes everyday"));
   const CommandResult other = make("other", "fancy");
   EXPECT_EQ(other.exit_code, 2);

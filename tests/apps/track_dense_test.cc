@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `bodyloom track` knows about the noise of dense keypoints, from files to the plan: this project's .npz,
-// DensePose images, and the user's own word.
+// Noise of dense keypoints in `bodyloom track`, from files to the plan: this project's .npz, DensePose images, and the
+// user's setting.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

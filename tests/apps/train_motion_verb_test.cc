@@ -50,9 +50,9 @@ TEST_F(TrainMotionVerb, TimeStandsStillWhileTheViewTurns) {
   const CommandResult frozen = animate("5:4");
   ASSERT_EQ(frozen.exit_code, 0) << frozen.err;
   VideoReader video(scratch_ / "a.mp4");
-  Image picture;
+  Image image;
   int frames = 0;
-  while (video.Read(&picture)) ++frames;
+  while (video.Read(&image)) ++frames;
   EXPECT_EQ(frames, 18);
   for (const char* wrong : {"14:4", "-1:4", "5", "5:0", "5:4x"}) {
     const CommandResult refused = animate(wrong);
@@ -80,7 +80,7 @@ TEST_F(TrainMotionVerb, MotionIsShownAtTheRunsRate) {
   EXPECT_NEAR(VideoReader(scratch_ / "a.mp4").info().fps, 15, 0.01);
   const CommandResult scored = animate("--data", "person");
   EXPECT_EQ(scored.exit_code, 1);
-  EXPECT_THAT(scored.err, HasSubstr("pictures at 30 frames a second, expected 15 as in training"));
+  EXPECT_THAT(scored.err, HasSubstr("images at 30 frames a second, expected 15 as in training"));
 }
 
 TEST_F(TrainMotionVerb, AxesAndVelocitiesAreChosenAsThoseOfDescribe) {
@@ -181,7 +181,7 @@ TEST_F(TrainMotionVerb, TrainsGoesOnAndAnimates) {
   EXPECT_EQ(scores["lpips_of_random_features"], true);
   EXPECT_EQ(FileBytes(scratch_ / "a.csv").rfind("frame,image_l1,ssim,lpips,tlpips,similarity\n0,0.", 0), 0U);
   EXPECT_THAT(animated.out, HasSubstr("silhouette IoU"));
-  EXPECT_THAT(animated.out, HasSubstr("dB of the whole picture"));
+  EXPECT_THAT(animated.out, HasSubstr("dB of the whole image"));
   VideoReader video(scratch_ / "a.mp4");
   EXPECT_EQ(video.info().width, 96);
   EXPECT_TRUE(fs::exists(scratch_ / "a.png"));
@@ -286,7 +286,7 @@ TEST_F(TrainMotionVerb, TheDescriptorOf2dSystemsTrainsAndAnimates) {
   EXPECT_EQ(Train("x", {"--descriptor", "keypoints"}).exit_code, 2);
 }
 
-TEST_F(TrainMotionVerb, EstimatesFromThePicturesStandInForTheBody) {
+TEST_F(TrainMotionVerb, EstimatesFromTheImagesStandInForTheBody) {
   const CommandResult trained = Train("run", {"--steps", "2", "--train", "0-9", "--iuv", "own", "--validate-data",
                                               scratch_ / "person", "--validate", "10-10"});
   ASSERT_EQ(trained.exit_code, 0) << trained.err;

@@ -118,7 +118,7 @@ TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
   EXPECT_EQ(photo["scores"][0]["frames"], 3);
   EXPECT_FALSE(photo["scores"][0].contains("label_iou")) << "it draws none";
   ASSERT_EQ(photo["scores"][0]["lpips_of_people_random_features"].size(), 1) << "the person kept for testing";
-  EXPECT_EQ(photo["scores"][0]["lpips_of_people_random_features"][0].size(), 3) << "a figure a picture";
+  EXPECT_EQ(photo["scores"][0]["lpips_of_people_random_features"][0].size(), 3) << "a figure an image";
   EXPECT_TRUE(animate["scores"][0].contains("label_iou"));
   for (const char* value : {"frames", "photos", "texels_seen"}) {
     EXPECT_NEAR(photo["scores"][0][value].get<double>(), animate["scores"][0][value].get<double>(), 0.01) << value;
@@ -138,8 +138,8 @@ TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
   EXPECT_GT(same, 1000);
   EXPECT_GT(other, 100);
 
-  // What needs no training draws the same pictures from the same photos; a body with a texture is better than the photo
-  // warped by the body, which is better than nothing.
+  // Methods without training draw the same images from the same photos; a textured body is better than the photo warped
+  // by the body, which is better than nothing.
   const auto untrained = [&](const std::string& name, const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"animate",        "person", "--score", scratch_ / "people",
                                           "--size",         "128",    "--json",  scratch_ / (name + ".json"),
@@ -170,7 +170,7 @@ TEST_F(TrainPhotoVerb, PeopleAreScoredUnderOneProtocol) {
   EXPECT_EQ(no_iuv.exit_code, 2);
   EXPECT_THAT(no_iuv.err, HasSubstr("--score-iuv: a body with a texture takes bodies"));
 
-  // What is given is estimated, all of it or some.
+  // The renderer's input is estimated, in part or entirely.
   const nlohmann::json labels = score("photo", {"--score-labels", "estimated"});
   EXPECT_EQ(labels["given"], "estimated labels, true bodies");
   EXPECT_NE(labels["scores"][0]["texels_seen"], photo["scores"][0]["texels_seen"]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verbs as a newcomer would use them, on a short clip that `bodyloom synth` makes once for all tests.
+// The verbs in their basic use, on a short clip that `bodyloom synth` makes once for all tests.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -203,7 +203,7 @@ TEST_F(Verbs, OverlayHasAFrameForEveryFrameOfTheTrack) {
                                  "--side-view", "--reference", Shared("clip/truth.npz")});
   RunWell(command);
   VideoReader video(folder_ / "overlay.mp4");
-  EXPECT_GT(video.info().width, 320) << "the side view stands beside the picture";
+  EXPECT_GT(video.info().width, 320) << "the side view stands beside the image";
   EXPECT_EQ(video.info().height, 240);
   EXPECT_EQ(video.Skip(2 * kFrames), kFrames);
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Plots of a benchmark's JSON are drawn, the same bytes each time, points that no axis shows left out. exit 77: no
-matplotlib here."""
+"""Checks that plots of a benchmark's JSON are drawn, identical each time, without points outside the axes. exit 77:
+matplotlib is missing."""
 import json
 import pathlib
 import subprocess

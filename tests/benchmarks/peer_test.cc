@@ -38,7 +38,7 @@ double InitialCost(const SequenceProblem& problem) {
   return engine.solve(&copy, engine.options).initial_cost;
 }
 
-/// Which minimum is found may differ (the pose prior is the nearest of several components); that it is one may not.
+/// The minima may differ (the pose prior is the nearest of several components), but each must be one.
 TEST(Peers, AutoDiffMinimisesTheSameCost) {
   for (const char* noise : {"pixel", "densepose"}) {
     for (int frames : {1, 3}) {

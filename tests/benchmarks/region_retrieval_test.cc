@@ -38,7 +38,7 @@ TEST(RegionRetrieval, RowsAreTheRegionsColumnsOfTheWhole) {
   const DescriptorRows motion = MotionDescriptors(frames, 2);
   EXPECT_EQ(MotionOfRegion(motion, hand).cols(), 9 * std::count(hand.texels.begin(), hand.texels.end(), true));
   EXPECT_THROW(MotionOfRegion(motion.leftCols(100), hand), std::invalid_argument);
-  // What the dense coordinates of all regions keep is what the whole has there.
+  // The dense coordinates of a region equal the whole's where they are kept.
   const DescriptorRows whole = DenseCoordinates(frames, 3), part = DenseCoordinatesOfRegion(frames, hand, 3);
   ASSERT_EQ(part.cols(), whole.cols());
   int kept = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person who turns, and maps of it, small enough to be correlated in a moment.
+/// A turning person with its maps, small enough for fast correlation.
 #pragma once
 
 #include "benchmarks/accuracy/turning_person.h"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Six shards by GNU parallel: one with a clip that fails, one killed and tried again; all done after it is sent twice.
+"""Six shards by GNU parallel: one with a failing clip, one killed and retried; all are done after two submissions.
 
 usage: parallel_test.py COMMAND     COMMAND: the program `bodyloom`
 exit 0: every clip done once; 1: not; 77: no GNU parallel here.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks installed headers: whatever one of them includes is installed too, and no internals are.
+"""Checks installed headers: everything they include is installed too, and no internal headers are.
 
 usage: check_headers.py INCLUDE_DIR      exit 0 when all is well, 1 with one line a fault, 2 when there is nothing
 """

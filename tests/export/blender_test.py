@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tracks a small clip, exports it, and has Blender say where it puts the surface and the joints.
+"""Tracks a small clip, exports it, and checks the positions of surface and joints in Blender.
 
 usage: blender_test.py COMMAND     COMMAND: the program `bodyloom`
 exit 0: within a millimetre; 1: not; 77: no Blender here.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The contract of every fuzz target: a reader may refuse with one line that names the file, and nothing else.
+/// Contract of every fuzz target: a reader may only fail with one line that names the file.
 #pragma once
 
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 namespace bodyloom::fuzz {
 
-/// True when `action` returns, false when it throws std::runtime_error naming the file; anything else gets out.
+/// True when `action` returns, false when it throws std::runtime_error naming the file; other exceptions propagate.
 template <typename Action>
 bool Accepts(const Action& action) {
   try {

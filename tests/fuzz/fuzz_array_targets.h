@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fuzzers' functions for files of named arrays beside bodies and tracks: observations, part labels, the pose
-/// prior, the lifter, the clothes parser and the built-in body's own arrays; and for the front doors that tell a format
-/// by its content.
-/// Each returns whether the input was accepted; what is accepted must hold together.
+/// Fuzz targets for files of named arrays other than bodies and tracks (observations, part labels, pose prior, lifter,
+/// clothes parser, the built-in body's own arrays), and for readers that detect the format by its content. Each returns
+/// true if the input was accepted; accepted data must be consistent.
 #pragma once
 
 #include <cmath>
@@ -25,7 +24,7 @@
 
 namespace bodyloom::fuzz {
 
-/// An archive of the framed arrays, not compressed: for readers that take a whole file.
+/// An uncompressed archive of the framed arrays, for readers that take a whole file.
 inline std::string ArchiveOf(const NpzArrays& arrays) {
   std::vector<ZipMember> members;
   for (const auto& [name, array] : arrays) members.push_back({name + ".npy", NpyBytes(array)});
@@ -73,7 +72,7 @@ inline bool AcceptsPartLabels(const std::string& bytes) {
   });
 }
 
-/// A person of Gaussians, and the training that it may be.
+/// A Gaussian avatar, and its training state if the file has one.
 inline bool AcceptsAvatar(const std::string& bytes) {
   const NpzArrays arrays = FramedArrays(bytes);
   const auto check = [](const GaussianBody& body, const AvatarFile& avatar) {
@@ -132,7 +131,7 @@ inline bool AcceptsLeftHalf(const std::string& bytes) {
   });
 }
 
-/// Whatever a motion file claims to be.
+/// Motion files of any format.
 inline bool AcceptsMotion(const std::string& bytes) {
   return Accepts([&] {
     const Motion motion = MotionFromBytes(bytes, "fuzz.motion");
@@ -166,7 +165,7 @@ inline void CheckEstimate(const BodyEstimate& estimate) {
   }
 }
 
-/// Whatever another system's results claim to be; GVHMR's without the archive, whose checksums no mutation survives.
+/// Results of any other system; GVHMR's without the archive, whose checksums no mutation passes.
 inline bool AcceptsEstimate(const std::string& bytes) {
   if (Accepts([&] { CheckEstimate(EstimateFromBytes(bytes, "fuzz.pkl", {640, 480})); })) return true;
   WeightsFile file;
@@ -174,7 +173,7 @@ inline bool AcceptsEstimate(const std::string& bytes) {
   return Accepts([&] { CheckEstimate(GvhmrFromTensors(file, "fuzz.pt")); });
 }
 
-/// Whatever a file of detections claims to be, with the person chosen and the times filled in.
+/// Files of detections of any format, with the person selected and missing times filled in.
 inline bool AcceptsDetectionsFile(const std::string& bytes) {
   return Accepts([&] { CheckKeypoints(DetectionsFromBytes(bytes, "fuzz.json", {})); });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fuzzers' functions for readers that want a path: the input is written to a file of this process first.
-/// Each returns whether the input was accepted; what is accepted must hold together.
+/// Fuzz targets for readers that need a path: the input is first written to a file of this process. Each returns true
+/// if the input was accepted; accepted data must be consistent.
 #pragma once
 
 #include <unistd.h>
@@ -34,7 +34,7 @@ class FuzzFolder {
   FuzzFolder(const FuzzFolder&) = delete;
   FuzzFolder& operator=(const FuzzFolder&) = delete;
   [[nodiscard]] std::string path() const { return path_.string(); }
-  /// Writes a file (its folder is made) and returns its path.
+  /// Writes a file, creating its folder, and returns its path.
   std::string Write(const std::string& name, const std::string& bytes) const {
     const std::filesystem::path path = path_ / name;
     std::filesystem::create_directories(path.parent_path());
@@ -54,8 +54,8 @@ inline const FuzzFolder& Folder() {
 inline bool AcceptsImage(const std::string& bytes) {
   const std::string path = Folder().Write("image.png", bytes);
   const bool image = Accepts([&] {
-    const Image picture = ReadImage(path);
-    if (picture.width < 1 || picture.height < 1) throw std::logic_error("an image without pixels");
+    const Image pixels = ReadImage(path);
+    if (pixels.width < 1 || pixels.height < 1) throw std::logic_error("an image without pixels");
   });
   const bool iuv = Accepts([&] {
     const IuvImage found = ReadIuvImage(path);
@@ -66,7 +66,7 @@ inline bool AcceptsImage(const std::string& bytes) {
   return image || iuv;
 }
 
-/// Whatever a video claims to be: frames of one size, each later than the one before.
+/// Videos of any format: frames of one size, at ascending times.
 inline bool AcceptsVideo(const std::string& bytes) {
   const std::string path = Folder().Write("video", bytes);
   const bool times = Accepts([&] { VideoFrameTimes(path); });
@@ -87,7 +87,7 @@ inline bool AcceptsVideo(const std::string& bytes) {
   return frames && times;
 }
 
-/// person.json of a set whose one frame is there.
+/// person.json of a dataset with one existing frame.
 inline bool AcceptsSinglePersonDataset(const std::string& bytes) {
   static const bool once = [] {
     for (const char* name : {"images", "labels", "normals", "iuv", "backgrounds"}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The libFuzzer program of all targets: BODYLOOM_FUZZ_TARGET names the one that runs. One program, because compiling
-/// the readers' headers 25 times took longer than fuzzing them.
+/// The libFuzzer program of all targets; BODYLOOM_FUZZ_TARGET selects one. It is a single program because compiling the
+/// readers' headers 25 times took longer than fuzzing them.
 #include <cstdio>
 #include <cstdlib>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fuzzer's functions for networks of TensorFlow Lite's and ONNX files, and for what detectors' networks say. Each
-/// returns whether the input was accepted; what is accepted must hold together: small networks are built and run too.
+/// Fuzz targets for TensorFlow Lite and ONNX files, and for outputs of detectors' networks. Each returns true if the
+/// input was accepted; accepted data must be consistent, and small networks are built and run.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace bodyloom::fuzz {
 
-/// Numbers of all tensors together up to which a network is run.
+/// Maximum total number of tensor elements of networks that are run.
 inline constexpr size_t kSmallNetwork = 20'000;
 
 inline void CheckOutputs(const std::vector<GraphTensor>& outputs) {
@@ -51,8 +51,8 @@ inline bool AcceptsTflite(const std::string& bytes) {
   return true;
 }
 
-/// An ONNX file that was read is a network, or is refused in one line by what its operators make of each other; one
-/// that was tried out on zeros runs.
+/// An ONNX file that was read is a network or is rejected in one line because its operators do not fit together; one
+/// that passed a trial on zeros must run.
 inline bool AcceptsOnnx(const std::string& bytes) {
   OperatorGraph graph;
   if (!Accepts([&] { graph = ParseOnnxGraph(bytes, "fuzz.onnx"); })) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fuzzers' functions for what jobs read beside weights, pictures and observations: a run's config.json, the light
-/// that shall be, a batch's manifest and the records of its clips.
+/// Fuzz targets for inputs of jobs other than weights, images and observations: a run's config.json, the requested
+/// light, a batch's manifest and the records of its clips.
 #pragma once
 
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Fuzz targets: every reader of untrusted binary files and meshes, on bytes (text: fuzz_text_targets.h). A reader may
-/// refuse with std::runtime_error and nothing else; whatever it accepts must hold together.
+/// Fuzz targets for every reader of untrusted binary files and meshes, on bytes (text: fuzz_text_targets.h). A reader
+/// may only fail with std::runtime_error; accepted data must be consistent.
 ///
 /// The same functions run under libFuzzer (tests/fuzz/fuzz_main.cc, clang) and under GoogleTest with fixed mutations
-/// (tests/data_tools/fuzz/fuzz_corpus_test.cc, any compiler). Each returns whether the input was accepted.
+/// (tests/data_tools/fuzz/fuzz_corpus_test.cc, any compiler). Each returns true if the input was accepted.
 #pragma once
 
 #include <algorithm>
@@ -190,8 +190,8 @@ inline constexpr const char* kNames[] = {"v_template",
                                          "mask_count",
                                          "mask_box"};
 
-/// Named arrays without the archive around them, whose checksums no mutation survives:
-/// (index of a known name, 3 bytes of length, .npy bytes) over and over.
+/// Parses named arrays without an archive, whose checksums no mutation passes: repeated (index of a known name, 3 bytes
+/// of length, .npy bytes).
 inline NpzArrays FramedArrays(const std::string& bytes) {
   NpzArrays arrays;
   size_t at = 0;
@@ -205,7 +205,7 @@ inline NpzArrays FramedArrays(const std::string& bytes) {
   return arrays;
 }
 
-/// The inverse, for seeds; arrays of other names are left out.
+/// Inverse of FramedArrays(), for seeds; arrays of other names are left out.
 inline std::string FrameArrays(const NpzArrays& arrays) {
   std::string framed;
   for (size_t i = 0; i < std::size(kNames); ++i) {
@@ -249,7 +249,7 @@ inline bool AcceptsWeights(const std::string& bytes) {
   return Accepts([&] { CheckWeights(WeightsFromBytes(bytes, "fuzz.pth", {.widen_halves = true})); });
 }
 
-/// BodyModel's own refusals are part of LoadBody's contract.
+/// Constructs the model; BodyModel's exceptions are part of LoadBody's contract.
 inline void CheckBody(BodyModelData data) {
   try {
     const BodyModel body(std::move(data));

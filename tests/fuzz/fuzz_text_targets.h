@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fuzzers' functions for text formats: detections, cameras, motions and the body's cage.
-/// Each returns whether the input was accepted; what is accepted must hold together.
+/// Fuzz targets for text formats: detections, cameras, motions and the body's cage. Each returns true if the input was
+/// accepted; accepted data must be consistent.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ inline void CheckPeople(const PeopleSequence& people) {
   }
 }
 
-/// Whatever the file claims to be, each reader must take it or refuse it.
+/// Every reader must accept or reject the file, regardless of its format.
 inline bool AcceptsDetections(const std::string& bytes) {
   nlohmann::json json;
   if (!Accepts([&] { json = ParseJson(bytes, "fuzz.json"); })) return false;
@@ -47,7 +47,7 @@ inline bool AcceptsDetections(const std::string& bytes) {
   return taken;
 }
 
-/// As JSON and as Pose2Sim's TOML, whatever it is.
+/// Reads the input as JSON and as Pose2Sim's TOML.
 inline bool AcceptsCameras(const std::string& bytes) {
   bool taken = Accepts([&] {
     for (const NamedCamera& camera : CamerasFromText(bytes, "fuzz.json")) {
@@ -62,7 +62,7 @@ inline bool AcceptsCameras(const std::string& bytes) {
   return taken;
 }
 
-/// As this project's JSON and as each of COLMAP's files, whatever it is.
+/// Reads the input as this project's JSON and as each of COLMAP's files.
 inline bool AcceptsCameraPath(const std::string& bytes) {
   bool taken = Accepts([&] {
     const RecordedCameraPath path = CameraPathFromText(bytes, "fuzz.json");
@@ -101,7 +101,7 @@ inline bool AcceptsBvh(const std::string& bytes) {
   return Accepts([&] { CheckSkeleton(BvhFromText(bytes, "fuzz.bvh")); });
 }
 
-/// Skeleton and motion in one input, apart at the first form feed.
+/// Skeleton and motion in one input, separated at the first form feed.
 inline bool AcceptsAsfAmc(const std::string& bytes) {
   const size_t apart = std::min(bytes.find('\f'), bytes.size());
   const std::string motion = apart < bytes.size() ? bytes.substr(apart + 1) : "";

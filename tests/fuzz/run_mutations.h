@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A fuzzer's function on fixed mutations of its seeds: bit flips, overwritten numbers, truncations, repeats and
-/// splices. The same on every machine, so that a failure can be run again. What ./dev test has in place of libFuzzer.
+/// Runs a fuzz target on fixed mutations of its seeds: bit flips, overwritten numbers, truncations, repeats and
+/// splices. The mutations are identical on every machine, so that failures are reproducible. ./dev test uses it in
+/// place of libFuzzer.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -63,7 +64,7 @@ class Mutator {
   std::mt19937 random_{20};
 };
 
-/// Every seed must be accepted; of the mutations some must be accepted and some refused, or they test nothing.
+/// Every seed must be accepted; some mutations must be accepted and some rejected, as the test has no power otherwise.
 template <typename Function>
 void RunMutations(const std::string& name, const Function& accepts, int mutations) {
   const std::vector<std::string> seeds = Seeds().at(name);

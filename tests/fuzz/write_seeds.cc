@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// write_seeds DIR: DIR/npz/0, DIR/npz/1, …, DIR/pickle/0, … as a start for the fuzzers.
+/// write_seeds DIR: writes DIR/npz/0, DIR/npz/1, …, DIR/pickle/0, … as seeds for the fuzzers.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A body of any size with random but plausible arrays: joints about 0.15 m apart, vertices around the bones, at most
-/// four influences, shape components of centimetres, correctives of millimetres to centimetres. No surface to look at.
+/// four influences, shape components of centimetres, correctives of millimetres to centimetres. It has no meaningful
+/// surface.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -22,7 +23,7 @@ struct RandomBodyOptions {
   unsigned seed = 1;
 };
 
-/// SMPL's tree first, joints beyond 24 hang on an earlier joint at random (as the fingers of SMPL-H and SMPL-X do).
+/// SMPL's tree first; joints beyond 24 are children of a random earlier joint (like the fingers of SMPL-H and SMPL-X).
 inline BodyModelData RandomBodyData(const RandomBodyOptions& o) {
   std::mt19937 random(o.seed);
   std::normal_distribution<double> normal;

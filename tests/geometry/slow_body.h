@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The body model a second time, written for comparison and not for speed: Loper et al., eq. 2–10, with homogeneous
-/// matrices, dense loops and any scalar (double, ceres::Jet). Shares no code with geometry/.
+/// Reference implementation of the body model, not optimised: Loper et al., eq. 2–10, with homogeneous matrices, dense
+/// loops and any scalar (double, ceres::Jet). Shares no code with geometry/.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ using Slow34 = std::array<std::array<T, 4>, 3>;
 
 template <typename T>
 struct SlowBody {
-  std::vector<Slow3<T>> vertices;  ///< the chosen ones
+  std::vector<Slow3<T>> vertices;  ///< the selected vertices
   std::vector<Slow3<T>> joints;    ///< J
 };
 

@@ -6,7 +6,7 @@ braces, which go from left to right.
 
 usage: check_draws.py [ROOT]      exit 0 when all is well, 1 with one line a fault, 2 when there is nothing to check
 
-A draw is taken from its looks: `random.Uniform(…)`, `noise->Normal()`, `normal(rng)`, `Draw(&random, …)`, `uniform()`.
+A draw is recognised by its form: `random.Uniform(…)`, `noise->Normal()`, `normal(rng)`, `Draw(&random, …)`, `uniform()`.
 """
 import pathlib
 import re

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Feeds check_draws.py calls whose draws have an order, and such whose draws have none."""
+"""Runs check_draws.py on calls whose draws have a defined order, and on calls whose draws have none."""
 import pathlib
 import subprocess
 import sys

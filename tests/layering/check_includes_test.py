@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Feeds check_includes.py small trees that break one rule each and expects each fault to be named."""
+"""Runs check_includes.py on small trees that break one rule each, and expects each fault to be named."""
 import pathlib
 import subprocess
 import sys

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Feeds check_names.py small libraries in which names collide, and such in which they do not."""
+"""Runs check_names.py on small libraries with and without colliding names."""
 import pathlib
 import subprocess
 import sys

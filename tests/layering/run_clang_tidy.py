@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs clang-tidy on files, several read as one, and remembers which were clean, so that only what has changed since is read again.
+"""Runs clang-tidy on files, several merged into one, and remembers the clean ones, so that only changed files are read again.
 A file alone takes some ten seconds, of which nearly all goes into the headers of libraries; sixteen together take thirty.
 
 usage: run_clang_tidy.py BUILD JOBS FILE...

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Has run_clang_tidy.py read a small project: findings are found again each time, what is clean once, until something changes."""
+"""Runs run_clang_tidy.py on a small project: findings are reported each time, clean files are read once until they change."""
 import json
 import pathlib
 import shutil

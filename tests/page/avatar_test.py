@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Learns a small person of Gaussians, writes its page, and has Chromium draw it: the page must show what the command draws, pixel
-by pixel but for rounding, load without a word on the console, and turn.
+"""Trains a small Gaussian avatar, writes its page, and draws it in Chromium: the page must match the command's images pixel by
+pixel up to rounding, load without console messages, and turn.
 
 usage: avatar_test.py COMMAND     COMMAND: the program `bodyloom`
 exit 0: so it is; 1: not; 77: no Chromium here.
@@ -80,8 +80,8 @@ def main():
             drawn, page_shows = pixels(folder / "drawn" / f"{frame:06}.png"), shown(f"#frame={frame}&plain")
             errors = sorted(abs(v * of_drawn[3] / 255 - w) for row, other in zip(drawn, page_shows)
                             for of_drawn, of_page in zip(row, other) if of_drawn[3] > 0 for v, w in zip(of_drawn[:3], of_page))
-            mean, most = sum(errors) / len(errors), errors[len(errors) * 99 // 100]
-            good = len(errors) > 1500 and mean < 1.5 and most < 12
+            mean, maximum = sum(errors) / len(errors), errors[len(errors) * 99 // 100]
+            good = len(errors) > 1500 and mean < 1.5 and maximum < 12
             print(("yes  " if good else "NO   ") + f"frame {frame} is what the command draws: {len(errors) // 3} pixels, off by "
                   f"{mean:.2f} levels, 99 % within {most:.0f}")
             faults += not good

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tracks a small clip with its page, and has Chromium open it from disk: it must load without a word on the console, show
-another picture at another frame, from another side and without the texture, and the same one again.
+"""Tracks a small clip with its page, and opens it in Chromium from disk: it must load without console messages, show different
+images for another frame, side and without texture, and the original image again afterwards.
 
 usage: chromium_test.py COMMAND     COMMAND: the program `bodyloom`
 exit 0: so it is; 1: not; 77: no Chromium here.

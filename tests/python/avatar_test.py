@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A person of Gaussians is learned, shown and written as the command does it."""
+"""A Gaussian avatar is trained, rendered and written as by the command."""
 import pathlib
 import subprocess
 import tempfile
@@ -45,7 +45,7 @@ class Learned(unittest.TestCase):
         shown = self.avatar.show(self.track, view_yaw="30")
         self.assertEqual((len(shown), shown.width, shown.height), (5, SIZE, SIZE))
         for t in (3, 0):
-            picture = shown.picture(t)
+            picture = shown.image(t)
             self.assertEqual(picture.shape, (SIZE, SIZE, 4))
             self.assertGreater((picture[..., 3] > 127).mean(), 0.02)
             seen = picture[..., 3] > 0
@@ -67,7 +67,7 @@ class Learned(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "nothing is to be written"):
             self.avatar.animate(self.track)
         with self.assertRaisesRegex(ValueError, "outside the motion's 5 frames"):
-            self.avatar.show(self.track).picture(5)
+            self.avatar.show(self.track).image(5)
         with self.assertRaisesRegex(ValueError, "view-yaw"):
             self.avatar.show(self.track, view_yaw="aside")
         with self.assertRaisesRegex(ValueError, "steps"):

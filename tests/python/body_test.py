@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The body's surface and joints are those of the command; cameras project as NumPy does."""
+"""The body's surface and joints equal the command's; cameras project as computed in NumPy."""
 import pathlib
 import tempfile
 import unittest

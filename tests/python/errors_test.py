@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What cannot be is refused in one line that names it; files of garbage raise and never crash."""
+"""Invalid arguments are rejected in one line that names them; garbage files raise and never crash."""
 import pathlib
 import random
 import tempfile

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C, progress functions and other threads while long work runs."""
+"""Ctrl-C, progress functions and other threads during long jobs."""
 import functools
 import os
 import pathlib
@@ -133,12 +133,12 @@ class Threads(unittest.TestCase):
         _, truth = clip()
         frames = bodyloom.DescriptorFrames(truth, size=32)
         renderer = bodyloom.Renderer(truth)
-        expected = [frames[t] for t in range(8)], [renderer.picture(t) for t in range(8)]
+        expected = [frames[t] for t in range(8)], [renderer.image(t) for t in range(8)]
         faults = []
 
         def work():
             for t in range(8):
-                if (frames[t] != expected[0][t]).any() or (renderer.picture(t) != expected[1][t]).any():
+                if (frames[t] != expected[0][t]).any() or (renderer.image(t) != expected[1][t]).any():
                     faults.append(t)
 
         threads = [threading.Thread(target=work) for _ in range(4)]

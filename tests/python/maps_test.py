@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Descriptors and pictures are those of the command."""
+"""Descriptors and images equal the command's."""
 import pathlib
 import tempfile
 import unittest
@@ -86,21 +86,21 @@ class Pictures(Folder):
     def test_colours_are_red_green_blue(self):
         red = np.zeros((240, 320, 3), np.uint8)
         red[..., 0] = 255
-        picture = bodyloom.Renderer(tracked(), "normal").picture(5, background=red)
+        picture = bodyloom.Renderer(tracked(), "normal").image(5, background=red)
         np.testing.assert_array_equal(picture[0, 0], [255, 0, 0])
 
     def test_views(self):
         renderer = bodyloom.Renderer(tracked(), view_yaw_deg=90)
         self.assertEqual((len(renderer), renderer.width, renderer.height), (40, 320, 240))
-        side = renderer.picture(5)
+        side = renderer.image(5)
         self.assertTrue((side != bodyloom.render(tracked(), 5)).any())
-        self.assertTrue((side != renderer.picture(5, turn_deg=90)).any())
+        self.assertTrue((side != renderer.image(5, turn_deg=90)).any())
 
     def test_error_colours(self):
         _, truth = clip()
         renderer = bodyloom.Renderer(tracked(), "error", truth=truth)
         self.assertIn("mm", renderer.legend)
-        self.assertEqual(renderer.picture(5).shape, (240, 320, 3))
+        self.assertEqual(renderer.image(5).shape, (240, 320, 3))
 
     def test_texture_as_array_and_as_file(self):
         bodyloom.render(tracked(), 5, out=self.folder / "any.png")

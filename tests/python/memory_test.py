@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays are views of the module's memory: nothing is copied, nothing can be written to, nothing goes away too soon."""
+"""Arrays are read-only views of the module's memory: nothing is copied, and the memory outlives the views."""
 import gc
 import unittest
 import weakref

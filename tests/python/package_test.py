@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`pip install` of the tree and the examples, with what was built."""
+"""`pip install` of the source tree with the existing build, and the examples."""
 import os
 import pathlib
 import re

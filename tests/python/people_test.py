@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Everybody in a video is who the command finds; skipped without the recording or the pose detector's networks."""
+"""People in a video are those of the command; skipped without the recording or the pose detector's networks."""
 import pathlib
 import tempfile
 import unittest
@@ -21,14 +21,14 @@ class TwoPeople(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
-        run_command("run", VIDEO, "--out", cls.folder / "command", "--no-overlay", "--least-seconds", "0.05", "--from", "0.5",
+        run_command("run", VIDEO, "--out", cls.folder / "command", "--no-overlay", "--min-seconds", "0.05", "--from", "0.5",
                     "--to", "0.6", "--detector", "full", "--models", MODELS)
 
     def test_run_in_memory_and_in_files(self):
-        tracks = bodyloom.run(VIDEO, least_seconds=0.05, **SPAN)
+        tracks = bodyloom.run(VIDEO, min_seconds=0.05, **SPAN)
         self.assertEqual(len(tracks), 2)
         self.assertIn("person 1", repr(tracks[1]))
-        files = bodyloom.run(VIDEO, out=self.folder / "module", overlay=False, masks=True, least_seconds=0.05, **SPAN)
+        files = bodyloom.run(VIDEO, out=self.folder / "module", overlay=False, masks=True, min_seconds=0.05, **SPAN)
         self.assertTrue((self.folder / "module" / "mask_1.npz").exists())
         self.assertFalse((self.folder / "module" / "overlay.mp4").exists())
         for i in range(2):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A person from a photo is that of the command; skipped without the recording or the pose detector's networks."""
+"""A person from a photo equals the command's; skipped without the recording or the pose detector's networks."""
 import pathlib
 import subprocess
 import tempfile

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the unittest cases of one file, and leaves a report of them in GoogleTest's form, which `./dev test` counts.
+"""Runs the unittest cases of one file and writes a report in GoogleTest's format for `./dev test`.
 
 usage: run_tests.py FILE REPORT.xml     exit 0: all passed or skipped, 1: not
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The type stub and the module say the same: every name, every argument, every default, and a docstring for each."""
+"""The type stub matches the module: every name, every argument, every default, and a docstring for each."""
 import ast
 import inspect
 import pathlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the Python module share."""
+"""Shared code of the tests of the Python module."""
 import functools
 import os
 import pathlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tracks made from Python are those of the command and of the truth."""
+"""Tracks made from Python equal the command's and agree with the truth."""
 import pathlib
 import pickle
 import tempfile

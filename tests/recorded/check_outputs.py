@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Runs the command on fixed inputs and compares what it writes, byte for byte, with recorded checksums: a change of
-structure alone leaves every file as it was.
+structure alone leaves every file unchanged.
 
 usage: check_outputs.py COMMAND RECORD [--write --made-with COMMIT] [--only JOB]
   COMMAND  the program `bodyloom` of a build; neural jobs are left out when no `bodyloom-neural` lies beside it

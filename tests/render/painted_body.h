@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pictures of a body painted by a formula, whose colour at every surface point is known.
+/// Images of a body painted by a formula, with known colour at every surface point.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,8 +19,8 @@ inline Eigen::Vector3d PaintAt(const BodyModel& body, int face, const Eigen::Vec
           0.5 + 0.3 * std::cos(10 * p.z() + 5 * p.x())};
 }
 
-/// What `camera` sees; the background is a colour that the paint never has.
-inline Image PaintedPicture(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera) {
+/// Image seen by `camera`; the background has a colour that the paint never has.
+inline Image PaintedImage(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera) {
   VisibilityBuffer buffer;
   buffer.Render(vertices, body.data().faces, camera);
   const VisiblePoints points = ResolveVisiblePoints(buffer, body, vertices, camera);

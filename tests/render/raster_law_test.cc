@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visibility buffer against its plainly written twin: the same face and the same bits of depth on every pixel, for
+// The visibility buffer against its reference implementation: equal faces and bit-identical depths on every pixel, for
 // every instruction set and any number of threads.
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ std::vector<Scene> Scenes() {
   return scenes;
 }
 
-void ExpectEqual(const Scene& scene, const TwinPicture& twin, const VisibilityBuffer& buffer, const std::string& how) {
+void ExpectEqual(const Scene& scene, const TwinImage& twin, const VisibilityBuffer& buffer, const std::string& how) {
   int covered = 0;
   for (int y = 0; y < twin.height; ++y) {
     for (int x = 0; x < twin.width; ++x) {
@@ -90,7 +90,7 @@ TEST(RasterLaw, EveryInstructionSetAndThreadCountEqualsTheTwin) {
   const std::vector<int64_t> targets = raster_internal::SimdTargets();
   EXPECT_GE(targets.size(), 1u);
   for (const Scene& scene : Scenes()) {
-    const TwinPicture twin = RasterTwin(scene.vertices, scene.faces, scene.camera, scene.cull_back_faces);
+    const TwinImage twin = RasterTwin(scene.vertices, scene.faces, scene.camera, scene.cull_back_faces);
     for (const int64_t target : targets) {
       const SimdTargetInUse use(target);
       VisibilityBuffer buffer;
@@ -108,8 +108,8 @@ TEST(RasterLaw, EveryInstructionSetAndThreadCountEqualsTheTwin) {
 TEST(RasterLaw, TheTwinItselfNeedsNoBoundingBox) {
   for (const Camera& camera : {MakePinhole(90, 80, 100), WeakCamera(90, 80, 40)}) {
     const Scene scene = Soup(camera, 77, false, 60);
-    const TwinPicture twin = RasterTwin(scene.vertices, scene.faces, camera, false);
-    const TwinPicture all = RasterTwin(scene.vertices, scene.faces, camera, false, true);
+    const TwinImage twin = RasterTwin(scene.vertices, scene.faces, camera, false);
+    const TwinImage all = RasterTwin(scene.vertices, scene.faces, camera, false, true);
     EXPECT_EQ(twin.face, all.face);
     EXPECT_EQ(twin.covers, all.covers);
   }
@@ -155,7 +155,7 @@ TEST(RasterLaw, AFaceAcrossA16kImageIsDrawnToItsLastPixel) {
   scene.faces << 0, 2, 1, 0, 3, 2;
   VisibilityBuffer buffer;
   buffer.Render(scene.vertices, scene.faces, scene.camera, {.num_threads = 2});
-  const TwinPicture twin = RasterTwin(scene.vertices, scene.faces, scene.camera, true);
+  const TwinImage twin = RasterTwin(scene.vertices, scene.faces, scene.camera, true);
   ExpectEqual(scene, twin, buffer, "stripe");
   EXPECT_EQ(std::count_if(buffer.faces().begin(), buffer.faces().end(), [](int f) { return f >= 0; }), 16000 * 3);
 }
@@ -196,7 +196,7 @@ TEST(RasterLaw, EdgesThroughPixelCentresOfALargeGridGiveNoHolesAndNoDoubleHits) 
         scene.faces.row(f++) << a, d, c;
       }
     }
-    const TwinPicture twin = RasterTwin(scene.vertices, scene.faces, scene.camera, true);
+    const TwinImage twin = RasterTwin(scene.vertices, scene.faces, scene.camera, true);
     VisibilityBuffer buffer;
     buffer.Render(scene.vertices, scene.faces, scene.camera);
     ExpectEqual(scene, twin, buffer, "grid");
@@ -209,8 +209,8 @@ TEST(RasterLaw, EdgesThroughPixelCentresOfALargeGridGiveNoHolesAndNoDoubleHits) 
   }
 }
 
-/// What the ray through a pixel's centre meets first, in double and in space: no projection, no clipping. `margin` is
-/// how far, in barycentrics of the nearest face met or missed, the ray passes from an edge.
+/// First face hit by the ray through a pixel's centre, in double and in space: no projection, no clipping. `margin` is
+/// the distance of the ray from an edge, in barycentrics of the nearest face hit or missed.
 int RayCast(const Scene& scene, int x, int y, double near_m, double* margin, double* depth) {
   const Eigen::Vector2d a = scene.camera.Unproject(Eigen::Vector2d(x, y));
   const bool weak = scene.camera.model == CameraModel::kWeakPerspective;
@@ -295,7 +295,7 @@ TEST(RasterLaw, ABodyThroughTheCameraIsDrawnInFrontOfItOnly) {
   }
 }
 
-TEST(RasterLaw, AFailedPictureShowsNothing) {
+TEST(RasterLaw, AFailedImageShowsNothing) {
   Scene scene = Body(MakePinhole(50, 50, 50), 12, true);
   VisibilityBuffer buffer;
   buffer.Render(scene.vertices, scene.faces, scene.camera);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The promises of the fixture that other tests build on.
+// Properties of the toy body that other tests rely on.
 #include "tests/support/toy_body.h"
 
 #include <gtest/gtest.h>

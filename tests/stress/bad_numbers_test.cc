@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that no detector, camera or clock should give.
+// Invalid numbers of detectors, cameras and clocks.
 #include <cmath>
 #include <functional>
 #include <limits>

@@ -9,10 +9,10 @@ namespace bodyloom::stress {
 /// Exactly 100 vertices: three about each joint and one for each landmark of the surface.
 BodyModel BodyOf100Vertices();
 
-/// The toy body's vertices over and over, at most `num_vertices` of them (at least 804); every whole copy has faces.
+/// The toy body's vertices repeated, at most `num_vertices` of them (at least 804); every complete copy has faces.
 BodyModel BodyOfManyVertices(int num_vertices);
 
-/// A body of this body's numbers times `scale`: in millimetres for 1000.
+/// The body scaled by `scale`: in millimetres for 1000.
 BodyModel ScaledBody(const BodyModel& body, double scale);
 
 }  // namespace bodyloom::stress

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clips that break off, lose half of the person, exchange left and right, or change the lens.
+// Clips that end early, lose half of the person, swap left and right, or change the lens.
 #include <algorithm>
 #include <cmath>
 

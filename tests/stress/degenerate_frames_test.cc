@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames that show too little, or nothing true.
+// Frames with too few or only false observations.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command killed at a random moment: its output is whole or not there, and running it again gives the same bytes;
-// so does a batch of clips.
+// The command and a batch killed at a random moment: outputs are complete or absent, and a second run gives the same
+// bytes.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -97,7 +97,7 @@ TEST(Interruption, ATrackKilledAtARandomMomentIsWholeOrNotThereAndRunsAgain) {
   EXPECT_GT(absent, 1);
 }
 
-/// What each clip's folder holds: the track's bytes, and the names of the other files (reports have times in them).
+/// Contents of each clip's folder: the track's bytes, and the names of the other files (reports have times in them).
 std::map<std::string, std::string> ClipsOf(const std::string& out) {
   std::map<std::string, std::string> clips;
   if (!std::filesystem::exists(out + "/clips")) return clips;
@@ -115,7 +115,7 @@ TEST(Interruption, ABatchKilledAgainAndAgainEndsAsOneThatWasNot) {
   const CommandResult synth = RunCommand(
       {"synth", "--motion", "demo", "--frames", "10", "--fps", "15", "--dense", "0", "--out", folder / "clip"});
   ASSERT_EQ(synth.exit_code, 0) << synth.err;
-  constexpr int kClips = 6, kMostKills = 40, kFilesOfAClip = 3;
+  constexpr int kClips = 6, kMaxKills = 40, kFilesOfAClip = 3;
   std::string manifest;
   for (int i = 0; i < kClips; ++i) {
     manifest += "{\"id\":\"c" + std::to_string(i) + "\",\"detections\":\"clip/observations.npz\"}\n";
@@ -141,7 +141,7 @@ TEST(Interruption, ABatchKilledAgainAndAgainEndsAsOneThatWasNot) {
     for (const auto& entry : std::filesystem::directory_iterator(work, ignored)) names.insert(entry.path().filename());
     return names;
   };
-  for (int i = 0; i < kMostKills && before.size() < expected.size(); ++i) {
+  for (int i = 0; i < kMaxKills && before.size() < expected.size(); ++i) {
     // Every other one while a clip is at work.
     const std::set<std::string> left = names_at_work();
     const auto is_at_work = [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must not change an answer: threads, instruction sets, where the image, the world and the clock begin.
+// Invariance of results to threads, instruction sets, and the origins of image, world and clock.
 #include <hwy/targets.h>
 
 #include <algorithm>

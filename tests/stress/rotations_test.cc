@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rotations at and beyond half a turn, and starts that are far off.
+// Rotations at and beyond half a turn, and distant initial values.
 #include <cmath>
 
 #include "data_tools/body/builtin_body.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Support of the stability suite: the engines it runs on, clips with known truth, and what every answer must keep. The
-/// cases and what they promise: docs/stability.md.
+/// Support of the stability suite: the engines it runs on, clips with known truth, and invariants of every result. The
+/// cases and their guarantees: docs/stability.md.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 namespace bodyloom::stress {
 
-/// Every case that solves runs once with each of these (TrackSequenceOptions::solver). A new engine is one more name.
+/// Every case that solves runs once with each of these engines (TrackSequenceOptions::solver).
 inline const std::vector<std::string>& Engines() {
   static const std::vector<std::string> names = {"ceres", "chain", "chain+ceres"};
   return names;
@@ -33,25 +33,25 @@ class EngineTest : public ::testing::TestWithParam<std::string> {};
                              return name;                                               \
                            })
 
-/// The demo motion before a camera: `frames` frames at `fps` with detections as a detector makes them, and with
-/// `dense` surface keypoints a frame.
+/// The demo motion before a camera: `frames` frames at `fps` with realistic detections and `dense` surface keypoints
+/// per frame.
 SynthClip DemoClip(const BodyModel& body, int frames, double fps = 15, int dense = 0,
                    const SynthClipOptions& options = {});
 
-/// The same of any motion in a world, at its own rate.
+/// The same for any motion in a world, at its own rate.
 SynthClip ClipOf(const BodyModel& body, const Motion& motion, int dense = 0, const SynthClipOptions& options = {});
 
-/// Everything the clip offers, with the built-in prior; borrows the clip and the body.
+/// All observations of the clip, with the built-in prior; borrows the clip and the body.
 TrackSequenceInput InputOf(const BodyModel& body, const SynthClip& clip);
 
-/// One thread, no uncertainty: what most cases need.
+/// Options of most cases: one thread, no uncertainty.
 TrackSequenceOptions OptionsOf(const std::string& engine);
 
-/// TrackSequence(), with ExpectSound() on what it returns.
+/// Runs TrackSequence() and checks its result by ExpectSound().
 TrackSequenceResult Fit(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
-/// What every answer keeps, however bad the input: one state and one status a frame; a frame's numbers are all finite,
-/// or the frame says that it is lost; frames are counted rightly; a failure has a message; a usable answer has a finite
+/// Checks the invariants of every result, for any input: one state and one status per frame; a frame's numbers are all
+/// finite or the frame is marked as lost; frame counts are right; a failure has a message; a usable result has a finite
 /// cost.
 void ExpectSound(const TrackSequenceResult& result, int frames);
 
@@ -69,8 +69,7 @@ double LargestStep(const Track& track);
 /// Angle between the root's rotation and the true one, radians.
 double RootErrorRad(const TrackSequenceResult& result, const SynthClip& clip, int t);
 
-/// Memory that this process holds now, bytes: resident; with the address sanitizer, which keeps what was freed for a
-/// while, what is allocated.
+/// Memory held by this process, bytes: resident; with the address sanitizer, which delays freeing, the allocated size.
 size_t BytesHeld();
 
 }  // namespace bodyloom::stress

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The law of render/gaussian_avatar/pose_gaussians.h once more, as plainly as it can be written, for double or for
-/// automatic derivatives, and a small person of Gaussians to try it on.
+/// Reference implementation of render/gaussian_avatar/pose_gaussians.h in its simplest form, for double or for
+/// automatic derivatives, and a small Gaussian avatar to test it on.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace bodyloom {
 
-/// Everything that can be learned of one Gaussian, its light and its bones.
+/// All trainable parameters of one Gaussian, its light and its bones.
 template <class T>
 struct TwinPerson {
   std::vector<std::array<T, GaussianBody::kNumParameters>> rows;
@@ -136,7 +136,7 @@ TwinPerson<T> TwinOf(const GaussianBody& body, const AvatarFrame& frame) {
   return person;
 }
 
-/// Gaussians about the joints of a frame, every number at random: joints of any order and named twice, quaternions and
+/// Gaussians around the joints of a frame with random parameters: joints in any order and repeated, quaternions and
 /// normals of any length, a light with all lobes.
 inline GaussianBody RandomPerson(int count, const AvatarFrame& frame, int num_faces, uint32_t seed) {
   std::mt19937 generator(seed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person as one made from photos, of whom everything is known.
+/// A person as made from photos, with known appearance.
 #pragma once
 
 #include "data_tools/body/builtin_body.h"
@@ -7,7 +7,7 @@
 
 namespace bodyloom {
 
-/// The built-in body, its colours running over the atlas; its left half was seen, the other mirrored.
+/// The built-in body with a colour gradient over the atlas; its left half was seen, the other mirrored.
 inline PhotoPerson ColouredPerson() {
   PhotoPerson person;
   person.bare = person.clothed = person.body = BodyOrBuiltin("");

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Embree's ray tracer: an independent judge of the visibility buffer, and the peer that benchmarks compare with. Only
-/// where Debian's libembree-dev is installed.
+/// Embree's ray tracer: an independent reference for the visibility buffer, and the alternative that benchmarks compare
+/// with. Requires Debian's libembree-dev.
 ///
-/// Embree works in float, on rays through pixel centres; the visibility buffer rounds corners to 1/256 px. So the two
-/// may differ beside edges. The policy of every comparison: a pixel is compared when its centre lies further than
-/// `margin_px` from every edge of both faces in question (the buffer's and Embree's), as projected without rounding;
-/// there the ids must be equal, unless the two depths agree to 1e-5 (surfaces that pass through each other).
+/// Embree works in float, on rays through pixel centres; the visibility buffer rounds corners to 1/256 px, so the two
+/// may differ near edges. Rule of every comparison: a pixel is compared when its centre is farther than `margin_px`
+/// from every edge of both faces (the buffer's and Embree's), as projected without rounding; there the ids must be
+/// equal, unless the two depths agree to 1e-5 (surfaces that pass through each other).
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -102,21 +102,21 @@ class EmbreeTwin {
   MatrixX3i faces_;
 };
 
-/// How far a pixel's centre is from the nearest edge of a projected face, pixels; 0 when a corner does not project.
+/// Distance of a pixel's centre from the nearest edge of a projected face, pixels; 0 when a corner does not project.
 inline double DistanceToEdges(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera, int face, int x,
                               int y) {
   Eigen::Vector2d corner[3];
   for (int c = 0; c < 3; ++c) {
     if (!camera.Project(vertices.row(faces(face, c)).transpose(), &corner[c])) return 0;
   }
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (int c = 0; c < 3; ++c) {
     const Eigen::Vector2d &p = corner[c], q = corner[(c + 1) % 3], at(x, y);
     const Eigen::Vector2d along = q - p;
     const double share = along.squaredNorm() > 0 ? std::clamp((at - p).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
-    least = std::min(least, (at - p - share * along).norm());
+    minimum = std::min(minimum, (at - p - share * along).norm());
   }
-  return least;
+  return minimum;
 }
 
 }  // namespace bodyloom

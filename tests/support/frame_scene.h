@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A scene of one frame of a toy body before a camera, with what the frame cost needs; tests of its terms add
+/// A scene of one frame of a toy body before a camera, with the inputs of the frame cost; tests of its terms add
 /// observations.
 #pragma once
 
@@ -32,7 +32,7 @@ struct FrameScene {
   FrameScene& operator=(const FrameScene&) = delete;
 };
 
-/// A pointer that owns nothing, for terms that share what a scene holds.
+/// A non-owning pointer, for terms that share data of a scene.
 template <typename T>
 std::shared_ptr<const T> Borrowed(const T& value) {
   return {std::shared_ptr<void>(), &value};
@@ -83,7 +83,7 @@ inline void ExpectMatchesTwin(const FrameSystem& system, double cost, const Eige
                               const Eigen::VectorXd& r) {
   constexpr double kRelative = 1e-9;
   EXPECT_NEAR(system.cost, cost, kRelative * std::max(cost, 1e-6));
-  // Rounding in r is felt through J: at a zero residual the gradient is zero to 1e-12 of what a unit residual gives.
+  // Rounding in r propagates through J: at a zero residual the gradient is zero to 1e-12 of that of a unit residual.
   const Eigen::VectorXd gradient = J.transpose() * r;
   EXPECT_LE((system.gradient - gradient).norm(), kRelative * gradient.norm() + 1e-12 * J.norm());
   const Eigen::MatrixXd H = system.H.selfadjointView<Eigen::Lower>(), expected = J.transpose() * J;

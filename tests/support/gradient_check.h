@@ -12,7 +12,7 @@ namespace bodyloom {
 
 struct GradientCheck {
   int64_t num_compared = 0;
-  int64_t num_nonzero = 0;  ///< derivatives above 1e-5 of the largest: what makes the comparison mean something
+  int64_t num_nonzero = 0;  ///< derivatives above 1e-5 of the largest, which make the comparison meaningful
   double max_error = 0;     ///< largest |backward − difference| / (largest |difference| of the same input)
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Folders and programs that tests open.
+/// Paths of folders and programs that tests use.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace bodyloom {
 /// The checkout.
 std::string SourceDir();
 
-/// Real recordings beside the checkout. Users do not have the folder: what needs it skips where it is missing.
+/// Real recordings beside the checkout. Users do not have the folder: tests that need it are skipped.
 std::string SharedDir();
 
 /// The `bodyloom` executable; "" in a build without apps/.

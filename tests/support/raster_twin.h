@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The law of the visibility buffer once more, as plainly as it can be written: every face against every pixel of its
+/// Reference implementation of the visibility buffer in its simplest form: every face against every pixel of its
 /// bounding box (or of the whole image), whole-image arrays, no increments, no tiles, no vectors.
 #pragma once
 
@@ -16,17 +16,17 @@
 
 namespace bodyloom {
 
-struct TwinPicture {
+struct TwinImage {
   int width = 0, height = 0;
   std::vector<int32_t> face;     ///< −1: background
   std::vector<float> nearness;   ///< −infinity: background
-  std::vector<uint16_t> covers;  ///< how many faces cover the pixel, hidden ones included
+  std::vector<uint16_t> covers;  ///< number of faces that cover the pixel, hidden ones included
 };
 
-/// All vertices must project (none behind the camera or outside the lens' field). `every_pixel`: do not trust bounding
-/// boxes either.
-inline TwinPicture RasterTwin(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera,
-                              bool cull_back_faces, bool every_pixel = false) {
+/// All vertices must project (none behind the camera or outside the lens' field). `every_pixel`: do not use bounding
+/// boxes.
+inline TwinImage RasterTwin(const MatrixX3d& vertices, const MatrixX3i& faces, const Camera& camera,
+                            bool cull_back_faces, bool every_pixel = false) {
   struct Corner {
     int64_t x, y;
     float nearness;
@@ -40,12 +40,12 @@ inline TwinPicture RasterTwin(const MatrixX3d& vertices, const MatrixX3i& faces,
     corners.push_back({static_cast<int64_t>(std::floor(pixel.x() * 256 + 0.5)),
                        static_cast<int64_t>(std::floor(pixel.y() * 256 + 0.5)), static_cast<float>(nearness)});
   }
-  TwinPicture picture;
-  picture.width = camera.width, picture.height = camera.height;
+  TwinImage image;
+  image.width = camera.width, image.height = camera.height;
   const size_t size = size_t(camera.width) * camera.height;
-  picture.face.assign(size, -1);
-  picture.nearness.assign(size, -std::numeric_limits<float>::infinity());
-  picture.covers.assign(size, 0);
+  image.face.assign(size, -1);
+  image.nearness.assign(size, -std::numeric_limits<float>::infinity());
+  image.covers.assign(size, 0);
   for (int f = 0; f < faces.rows(); ++f) {
     std::array<Corner, 3> p = {corners[faces(f, 0)], corners[faces(f, 1)], corners[faces(f, 2)]};
     const auto area_of = [&] { return (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x); };
@@ -87,15 +87,15 @@ inline TwinPicture RasterTwin(const MatrixX3d& vertices, const MatrixX3i& faces,
           nearness = static_cast<float>((p[0].nearness + (at_b + at_c)) + (by_b + by_c));
         }
         const size_t at = size_t(y) * camera.width + x;
-        ++picture.covers[at];
-        if (nearness > picture.nearness[at]) {  // faces rise: at a tie the lowest stays
-          picture.nearness[at] = nearness;
-          picture.face[at] = f;
+        ++image.covers[at];
+        if (nearness > image.nearness[at]) {  // faces rise: at a tie the lowest stays
+          image.nearness[at] = nearness;
+          image.face[at] = f;
         }
       }
     }
   }
-  return picture;
+  return image;
 }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What tests of the pose detector on real video need, and may lack.
+/// Requirements of the tests of the pose detector on real video.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace bodyloom {
 
-/// Why people cannot be detected in this recording here: it or the networks (./dev models) are not there. Empty when
-/// they can.
+/// Reason why people cannot be detected in this recording: it or the networks (./dev models) are missing. Empty if they
+/// can be.
 inline std::string WhyNoDetection(const std::string& recording) {
   if (!std::filesystem::exists(recording)) return recording + " is not there";
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Part labels of a known track: what a perfect detector would predict for every pixel.
+/// Part labels of a known track, as predicted by a perfect detector.
 #pragma once
 
 #include "geometry/base/check.h"
@@ -11,9 +11,9 @@
 
 namespace bodyloom {
 
-/// Every pixel takes the chart of the face that the centre of its block of block_px × block_px pixels sees (1: its own
-/// centre); a low-resolution detector's labels come in blocks. Frames without a result are empty.
-/// Throws std::invalid_argument when the body has no parts, the camera no image size, or block_px < 1.
+/// Each pixel gets the chart of the face at the centre of its block of block_px × block_px pixels (1: its own centre),
+/// as low-resolution detectors give labels in blocks. Frames without a result are empty. Throws std::invalid_argument
+/// when the body has no parts, the camera no image size, or block_px < 1.
 inline PartLabelSequence RenderPartLabels(const BodyModel& body, const Track& track, int block_px = 1) {
   BODYLOOM_CHECK(body.has_parts(), "RenderPartLabels: the body '", body.name(), "' has no parts");
   BODYLOOM_CHECK(block_px >= 1, "RenderPartLabels: blocks of ", block_px, " px, expected at least 1");
@@ -28,7 +28,7 @@ inline PartLabelSequence RenderPartLabels(const BodyModel& body, const Track& tr
       const BodyPose pose =
           PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
       buffer.Render(PoseVertices(body, track.motion.betas, pose), body.data().faces, track.CameraAt(t));
-      // A block may stick out of the box by as much as it is wide.
+      // A block may extend beyond the box by up to its width.
       const PixelBox box = buffer.box().GrownBy(block_px).ClippedTo({0, 0, labels.image_width, labels.image_height});
       image = {box.x_begin, box.y_begin, box.width(), box.height(), {}};
       for (int y = box.y_begin; y < box.y_end; ++y) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Runs the real executable as a user would, and keeps its output.
+/// Runs the executable and captures its output.
 #pragma once
 
 #include <csignal>

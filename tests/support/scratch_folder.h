@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A folder of its own for one test.
+/// A temporary folder for one test.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace bodyloom {
 
-/// A new folder among the temporary files, removed with all it holds at the end.
+/// A new temporary folder, removed with its contents on destruction.
 class ScratchFolder {
  public:
   ScratchFolder() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A short clip of the toy body as a SequenceProblem: smooth motion, landmarks and surface points seen with noise and
-/// outliers, and a start that is off.
+/// A short clip of the toy body as a SequenceProblem: smooth motion, landmarks and surface points with noise and
+/// outliers, and inexact initial values.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,7 @@ struct SequenceSceneOptions {
   uint64_t seed = 1;
 };
 
-/// Points into itself: not to be copied.
+/// Not copyable, as it holds pointers into itself.
 struct SequenceScene {
   BodyModel body{ToyBodyData()};
   JointLimits limits = JointLimits::ForBody(body);
@@ -118,7 +118,7 @@ inline std::unique_ptr<SequenceScene> MakeSequenceScene(const SequenceSceneOptio
     }
     problem.states.push_back(state);
     frame.Get<DenseTerm>().kernel = 12;
-    frame.Get<InitialiserTerm>().rotations = state.rotations;  // what few points leave open
+    frame.Get<InitialiserTerm>().rotations = state.rotations;  // for what few points leave undetermined
     frame.Get<InitialiserTerm>().translation = state.translation;
     frame.Get<InitialiserTerm>().weight = 0.1;
     problem.frames.push_back(frame);

@@ -8,8 +8,7 @@
 
 namespace bodyloom {
 
-/// Two seconds of the demo's walk, at 6 frames a second unless told otherwise, in pictures of 320×240; the camera
-/// stands still unless told otherwise.
+/// Two seconds of the demo's walk, by default at 6 frames per second, in images of 320×240, with a static camera.
 inline Track ShortTrack(int fps = 6, SynthCameraMotion camera = SynthCameraMotion::kStill) {
   SynthClipOptions options;
   options.camera_path.motion = camera;

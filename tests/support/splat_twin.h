@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The laws of render/splat once more, as plainly as they can be written, for double or for automatic derivatives
-/// (ceres::Jet): matrices as loops, every Gaussian against every pixel, sorted by std::stable_sort, no tiles, no boxes.
+/// Reference implementation of render/splat in its simplest form, for double or for automatic derivatives (ceres::Jet):
+/// matrices as loops, every Gaussian against every pixel, sorted by std::stable_sort, no tiles, no boxes.
 #pragma once
 
 #include <ceres/jet.h>
@@ -80,21 +80,21 @@ TwinSplat<T> TwinProject(const TwinGaussian<T>& g, const Camera& camera, double 
 }
 
 template <class T>
-struct TwinSplatPicture {
+struct TwinSplatImage {
   std::array<std::vector<T>, 4> planes;  ///< premultiplied red, green, blue; alpha
-  std::vector<bool> marginal;            ///< pixels where a cut or the stop was within `margin` of falling otherwise
+  std::vector<bool> marginal;            ///< pixels where a cut-off or early stop was within `margin` of its threshold
 };
 
 template <class T>
-TwinSplatPicture<T> TwinDraw(const std::vector<TwinSplat<T>>& splats, const PixelBox& box, double stop,
-                             double margin = 1e-4) {
+TwinSplatImage<T> TwinDraw(const std::vector<TwinSplat<T>>& splats, const PixelBox& box, double stop,
+                           double margin = 1e-4) {
   using std::exp;
   std::vector<int> order(splats.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return splats[a].depth < splats[b].depth; });
-  TwinSplatPicture<T> picture;
-  picture.marginal.assign(box.area(), false);
-  for (auto& plane : picture.planes) plane.assign(box.area(), T(0));
+  TwinSplatImage<T> image;
+  image.marginal.assign(box.area(), false);
+  for (auto& plane : image.planes) plane.assign(box.area(), T(0));
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {
       const size_t at = box.IndexOf(x, y);
@@ -107,17 +107,17 @@ TwinSplatPicture<T> TwinDraw(const std::vector<TwinSplat<T>>& splats, const Pixe
         const double cut = RealPart(alpha) * 255, passed = RealPart(transmittance);
         if (std::abs(cut - 1) < margin || std::abs(passed / stop - 1) < margin ||
             std::abs(RealPart(alpha) - 0.99) < 0.01 * margin) {
-          picture.marginal[at] = true;
+          image.marginal[at] = true;
         }
         if (cut < 1 || passed < stop) continue;
         if (RealPart(alpha) > 0.99) alpha = T(0.99);
-        for (int c = 0; c < 3; ++c) picture.planes[c][at] += s.colour[c] * alpha * transmittance;
+        for (int c = 0; c < 3; ++c) image.planes[c][at] += s.colour[c] * alpha * transmittance;
         transmittance *= T(1) - alpha;
       }
-      picture.planes[3][at] = T(1) - transmittance;
+      image.planes[3][at] = T(1) - transmittance;
     }
   }
-  return picture;
+  return image;
 }
 
 /// The first kNumGradients columns of a row.
@@ -144,8 +144,8 @@ std::array<T, kColumns> RowOf(const FloatColumns& columns, int i) {
   return row;
 }
 
-/// Gaussians of all shapes about the middle of a camera's view, some turned, some flat, some hidden by others; `size`
-/// is their largest standard deviation in metres.
+/// Gaussians of all shapes around the centre of a camera's view, some rotated, some flat, some occluded; `size` is
+/// their maximum standard deviation in metres.
 inline CameraGaussians GaussianCloud(int count, uint32_t seed, double spread = 0.5, double size = 0.06) {
   std::mt19937 generator(seed);
   const auto uniform = [&] { return generator() / 4294967296.0; };

@@ -11,7 +11,7 @@
 
 namespace bodyloom {
 
-/// All of a file; empty when there is none.
+/// Contents of a file; empty if it does not exist.
 inline std::string FileBytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream bytes;
@@ -19,7 +19,7 @@ inline std::string FileBytes(const std::string& path) {
   return bytes.str();
 }
 
-/// A folder of that name in the test's own place, emptied.
+/// An empty folder of that name in the test's own directory.
 inline std::string EmptyFolder(const std::string& name) {
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / name;
   std::filesystem::remove_all(folder);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A small body for tests, made by formulas: 804 vertices on SMPL's 24 joints, mirror symmetric, built in a
-/// millisecond.
+/// A small synthetic body for tests: 804 vertices on SMPL's 24 joints, mirror symmetric, built in a millisecond.
 ///
 /// Eight closed tubes (torso, head, arms, legs, feet) that overlap where limbs meet. Body frame as SMPL's (metres, y
 /// up, x the body's left, z front, T-pose); the pelvis is NOT at the origin, as in SMPL. Height about 1.67 m.
@@ -34,7 +33,7 @@ struct Ring {
   double radius_a, radius_b;
 };
 
-/// Rings first..last belong to a chart each for angles below and above π (equal: one chart of two islands).
+/// Rings first..last belong to one chart for angles below π and one above (equal: one chart of two islands).
 struct Section {
   int first, last;
   uint8_t part_a, part_b;
@@ -268,7 +267,7 @@ inline Tube LeftFootTube() {
 
 }  // namespace toy_body_internal
 
-/// The arrays of the toy body, for tests that want to change something first.
+/// The arrays of the toy body, for tests that modify them.
 inline BodyModelData ToyBodyData() {
   using namespace toy_body_internal;  // NOLINT: local to this function
   const Vector3d pelvis(0, -0.2, 0.02);

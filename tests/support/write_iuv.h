@@ -16,7 +16,7 @@
 
 namespace bodyloom {
 
-/// Whole pictures of the built-in body, one a frame, 000000.png and on. Returns the folder.
+/// Writes whole IUV images of the built-in body, one per frame, from 000000.png on. Returns the folder.
 inline std::string WriteIuv(const Track& track, const std::string& folder) {
   std::filesystem::create_directories(folder);
   for (int t = 0; t < track.num_frames(); ++t) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tracker with poses of another system, on synthetic clips with known truth.
+// The tracker with initial poses of another system, on synthetic clips with known truth.
 #include <gtest/gtest.h>
 
 #include <algorithm>

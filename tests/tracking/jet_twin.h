@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The body and the camera once more, written straight from the formulas for any scalar: dense loops over all joints,
-/// no kinematic sparsity, nothing shared with tracking/. Used with Jets as the truth for analytic derivatives.
+/// Reference implementation of body and camera, directly from the formulas for any scalar: dense loops over all joints,
+/// no kinematic sparsity, no code shared with tracking/. Used with Jets as the truth for analytic derivatives.
 #pragma once
 
 #include <ceres/jet.h>

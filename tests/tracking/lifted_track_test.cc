@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tracker with the lifter that ships, on synthetic clips with known truth and on clips that show too little.
+// The tracker with the built-in lifter, on synthetic clips with known truth and on clips that show too little.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -221,7 +221,7 @@ TEST(LiftedTrack, HalfTheBodyMissingForSecondsIsBridged) {
   const TrackSequenceResult result = TrackWithLifter(clip.keypoints, clip.truth.camera);
   ASSERT_TRUE(result.summary.IsUsable()) << result.summary.message;
   ExpectHonest(result);
-  // What nobody saw is known worse: the ankles, half way through the gap, against a frame that shows them.
+  // Unobserved joints have larger uncertainty: the ankles, half way through the gap, against a frame that shows them.
   const int ankle = BuiltinBody().FindJoint("l_ankle");
   ASSERT_GE(ankle, 0);
   EXPECT_GT(result.track.joint_sigma(65, ankle), 1.5 * result.track.joint_sigma(20, ankle));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tracker end to end on a synthetic clip of a camera that moves.
+// The tracker end to end on a synthetic clip of a moving camera.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 
 constexpr double kScaleKernel = 3;
 constexpr double kLastKernel =
-    1;  // of unnamed feet: while they change, neither stands, and all such steps err to one side
+    1;  // of either foot: during a change of feet neither stands, and all such steps bias s in one direction
 constexpr double kMaxRunStepS = 0.25;
 constexpr int kReweightings = 30;
-constexpr size_t kMostStarts = 256;  // from unnamed feet: each costs a pass over the clip
+constexpr size_t kMaxStarts = 256;  // from either foot: each costs a pass over the clip
 
 /// One frame of a run: its whitened offset from the run's mean, a + s b.
 struct Offset {
@@ -114,7 +114,7 @@ std::vector<Step> StepsOf(const std::vector<std::array<FootPlace, 2>>& feet, std
     for (int foot = 0; foot < 2; ++foot) {
       const FootPlace &from = feet[begin][foot], &to = feet[end][foot];
       if (!from.seen || !to.seen || !from.ankle_m.allFinite() || !to.ankle_m.allFinite()) continue;
-      // Each deviates from their mean by half of what separates them, once before and once after.
+      // Each deviates from their mean by half of their distance, once before and once after.
       const StandingRun run =
           MakeRun({feet[begin], feet[end]}, std::array{unit_path[begin], unit_path[end]}, foot, 0, 2, options);
       step.feet[foot] = Offset{std::sqrt(2.0) * run[0].a, std::sqrt(2.0) * run[0].b};
@@ -141,7 +141,7 @@ double CostAt(const std::vector<Step>& steps, double s) {
   return cost;
 }
 
-/// The positive start of least cost; 0 when none costs less than a path without length.
+/// The positive start of minimum cost; 0 when none costs less than s = 0.
 template <typename Feet>
 double BestStart(const Feet& feet, const std::vector<double>& starts) {
   double best = 0, best_cost = CostAt(feet, 0);
@@ -152,13 +152,13 @@ double BestStart(const Feet& feet, const std::vector<double>& starts) {
   return best;
 }
 
-/// The second way of the header.
+/// The second estimate of the header: one of the two feet stands at any time.
 CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_frame,
                                const CameraScaleOptions& options) {
   CameraScale result;
   result.why = steps.empty() ? "no foot is seen" : "the feet do not tell it";
   std::vector<double> starts;
-  for (size_t i = 0; i < steps.size(); i += 1 + steps.size() / kMostStarts) {
+  for (size_t i = 0; i < steps.size(); i += 1 + steps.size() / kMaxStarts) {
     for (const std::optional<Offset>& foot : steps[i].feet) {
       if (foot && foot->b.squaredNorm() > 0) starts.push_back(-foot->a.dot(foot->b) / foot->b.squaredNorm());
     }
@@ -183,12 +183,12 @@ CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_
   result.scale_m = best;
   result.sigma_m = information > 0 ? 1 / std::sqrt(information) : best;
   result.found = best > 0 && result.sigma_m <= options.max_relative_sigma * best &&
-                 CostAt(steps, best) <= (1 - options.least_gain) * CostAt(steps, 0);
+                 CostAt(steps, best) <= (1 - options.min_gain) * CostAt(steps, 0);
   if (result.found) result.why = "one of both feet stands at any time";
   return result;
 }
 
-/// The first way of the header.
+/// The first estimate of the header: runs of feet that the lifter calls standing.
 CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, const CameraScaleOptions& options) {
   CameraScale result;
   std::vector<double> starts;

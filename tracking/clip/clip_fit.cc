@@ -19,8 +19,8 @@
 #include "tracking/clip/track_result.h"
 #include "tracking/clip/uncertainty.h"
 #include "tracking/initialise/ground_plane.h"
-#include "tracking/initialise/impossible_frames.h"
 #include "tracking/initialise/initial_states.h"
+#include "tracking/initialise/outlier_frames.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/problem/input_checks.h"
 #include "tracking/problem/moving_camera.h"
@@ -52,8 +52,9 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
   return camera;
 }
 
-/// Hypotheses are off by a share of the body, while a dense keypoint's σ is in pixels: where the image is large, all of
-/// them would be outliers of the start. (The lifter's starts are near enough: with it this finds worse minima.)
+/// Widens the kernels of dense keypoints for starts from hypotheses. Errors of hypotheses are proportional to the body,
+/// while a dense keypoint's σ is in pixels: in a large image all keypoints would be outliers at the start. (Starts from
+/// the lifter are near enough; for them wider kernels lead to worse minima.)
 void WidenDenseKernels(double stature, SequenceProblem* problem) {
   constexpr double kShareOfHeight = 0.008;  // the usual 4 σ of 1 px for a person 500 pixels high
   for (size_t t = 0; t < problem->frames.size(); ++t) {
@@ -88,7 +89,7 @@ void ClipFit::CleanObservations() {
   if (input_.keypoints != nullptr) {
     keypoints_ = *input_.keypoints;
     DropUnusable(&keypoints_);
-    num_impossible_ = DropImpossibleFrames(&keypoints_);
+    num_impossible_ = RemoveOutlierFrames(&keypoints_);
     summary_.num_swaps_repaired = RepairSwaps(&keypoints_);
     input_.keypoints = &keypoints_;
   }
@@ -128,7 +129,7 @@ bool ClipFit::FindStart() {
   problem_.states = initial.states;
   problem_.betas = initial.betas;
   problem_.shape_prior.mean = initial.betas;
-  clock_.Book("initialise");
+  clock_.Record("initialise");
   if (!lifted_.frames.empty()) {
     lifted_landmarks_ = CompileLiftedLandmarks(*input_.body, problem_.layout.num_betas);
   }
@@ -177,8 +178,8 @@ void ClipFit::Observe() {
   }
   FollowCamera();
   problem_.velocity_weight = options_.velocity_weight;
-  // Detections of a frame and of its neighbours err together (COCO joints are not the body's, and detectors are off for
-  // a third of a second at a time), so frames do not outvote the shape prior as independent measurements would.
+  // Detection errors of neighbouring frames are correlated (COCO joints are not the body's, and errors of detectors
+  // last for a third of a second), so frames must not outweigh the shape prior as independent measurements would.
   problem_.shape_prior.weight = std::max(1.0, options_.shape_prior_weight * static_cast<double>(T));
   for (const auto& term : terms_) term->BeginFit(&problem_);
   summary_.num_parameters = static_cast<int>(T) * problem_.layout.num_frame_columns() + problem_.layout.num_columns -
@@ -231,7 +232,7 @@ void ClipFit::FitCameraScale(SequenceProblem* coarse) {
     return;
   }
   std::vector<std::array<FootPlace, 2>> feet =
-      SeenFeet(*coarse, coarse_frames_, lifted_.frames, lifted_landmarks_, *joints_);
+      ObservedFeet(*coarse, coarse_frames_, lifted_.frames, lifted_landmarks_, *joints_);
   std::vector<CameraPose> unit_path;
   for (size_t i = 0; i < feet.size(); ++i) {
     unit_path.push_back((*input_.camera_from_scene)[coarse_frames_[i]]);
@@ -280,7 +281,7 @@ void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
 }
 
 void ClipFit::FitRounds(SequenceProblem* coarse) {
-  // Labels bring the body into its outline before dense keypoints look at what it shows.
+  // Labels align the body with its outline before dense keypoints are matched to the visible surface.
   for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
     const ClipTerm::Rounds rounds = (*term)->rounds();
     Stage stage = stages_.round;
@@ -310,15 +311,16 @@ void ClipFit::FinishWithCeres() {
 
 void ClipFit::Finish(TrackSequenceResult* result) {
   FillTrack(input_, problem_, landmarks_, result);
-  SummariseImageTerms(problem_, &summary_);
-  SummariseCosts(problem_, threads_, &summary_);
+  FrameResiduals residuals;
+  SummariseCosts(problem_, threads_, &residuals, &summary_);
+  SummariseImageTerms(problem_, residuals, &summary_);
   for (const auto& term : terms_) term->Summarise(problem_, &summary_);
   result->track.world = WorldOfGround(summary_.ground, result->track.joints);
-  clock_.Book("finish");
+  clock_.Record("finish");
   summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
   if (options_.estimate_uncertainty) {
     FillJointSigma(&result->track);
-    clock_.Book("uncertainty");
+    clock_.Record("uncertainty");
   }
   summary_.seconds = clock_.seconds();
 }
@@ -336,7 +338,7 @@ void ClipFit::FillJointSigma(Track* track) {
     track->root_sigma[t] = sigma.hips[i];
   }
   if (!settled_focal_) return;
-  summary_.focal_log_sigma = settled_focal_->log_sigma;  // in the equations it is held
+  summary_.focal_log_sigma = settled_focal_->log_sigma;  // the normal equations hold it
   AddFocalSpread(settled_focal_->log_sigma, track);
 }
 
@@ -375,14 +377,14 @@ std::vector<Smoothness> FitSmoothness(const SequenceProblem& problem, const Smoo
     for (const double r : rms) squares += r * r;
     if (!(squares > 0)) continue;
     const double all = std::sqrt(squares / static_cast<double>(problem.layout.active_joints.size()));
-    const double sigma = std::clamp(kSigmaOfRms * all, kLeastSigma, kMostSigma);
+    const double sigma = std::clamp(kSigmaOfRms * all, kMinSigma, kMaxSigma);
     Smoothness& smooth = fitted[shot];
     smooth.root_acceleration *= sigma / before.tip_acceleration;
     smooth.weak_scale_acceleration *= sigma / before.tip_acceleration;
     smooth.tip_acceleration = sigma;
     smooth.of_joint.resize(rms.size());
     for (size_t j = 0; j < rms.size(); ++j) {
-      smooth.of_joint[j] = std::clamp(kSigmaOfRms * rms[j], kLeastOfJoint, kMostOfJoint);
+      smooth.of_joint[j] = std::clamp(kSigmaOfRms * rms[j], kMinOfJoint, kMaxOfJoint);
     }
   }
   return fitted;

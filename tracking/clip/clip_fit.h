@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The fit of a clip, one run of FitClip(): the clip's problem with all that its terms point to, and the steps
-/// that solve it.
+/// Fits a body to a clip, one run of FitClip(): the clip's problem with all that its terms point to, and the steps that
+/// solve it.
 #pragma once
 
 #include <memory>
@@ -28,16 +28,16 @@ class ClipFit {
   ClipFit(const ClipFit&) = delete;
   ClipFit& operator=(const ClipFit&) = delete;
 
-  /// A starting pose for every frame. False, with the reason in the summary, when no frame shows enough to start from.
+  /// Finds a starting pose for every frame. Returns false, with the reason in the summary, when no frame shows enough.
   bool FindStart();
-  /// The terms of every frame.
+  /// Makes the terms of every frame.
   void Observe();
-  /// The stages on the coarse frames, and what each of them gives of the clip.
+  /// Solves the stages on the coarse frames, and estimates smoothness, camera scale, focal length and ground from them.
   void FitCoarseFrames();
   void FitAllFrames();
-  /// Ceres on the whole, where options ask for it after chain's stages.
+  /// Solves the whole problem with Ceres if the options request it after chain's stages.
   void FinishWithCeres();
-  /// Track, summary and uncertainty.
+  /// Fills track, summary and uncertainty.
   void Finish(TrackSequenceResult* result);
 
   [[nodiscard]] SequenceProblem* problem() { return &problem_; }
@@ -45,18 +45,18 @@ class ClipFit {
  private:
   void CleanObservations();
   void SetUpProblem();
-  /// States and frames from the camera frames into the scene of a camera that moves.
+  /// Transforms states and frames from the camera frames into the scene of a moving camera.
   void FollowCamera();
   void FitNearStart(SequenceProblem* coarse);
-  /// How lively the clip is and where its ground is, after a first answer; fits again when that changes something.
+  /// Estimates smoothness and ground from a first solution; solves again when that changes something.
   void LearnFromFirstAnswer(SequenceProblem* coarse);
-  /// Finds the length of the camera's path, where it is not known, with the coarse answer so far, and gives it to all
-  /// frames; what each camera sees of the person stays as it is.
+  /// Estimates the scale of the camera's path, if not known, from the current coarse solution, and applies it to all
+  /// frames; the person's position in each camera frame stays the same.
   void FitCameraScale(SequenceProblem* coarse);
   void ScaleCameraPath(double scale_m, SequenceProblem* coarse);
-  /// A focal length that is not known becomes what the coarse answer and the prior say of it together, and stays;
-  /// people move along their rays with it. Only of 2D joints that the lifter has seen: nothing else is known to err as
-  /// much.
+  /// Fixes an unknown focal length at the estimate that joins the coarse solution and the prior; the person moves along
+  /// the viewing rays with it. Only with 2D joints and the lifter, without dense keypoints: the errors of these fits
+  /// are known.
   void SettleFocalLength(SequenceProblem* coarse);
   void FitRounds(SequenceProblem* coarse);
   /// Uncertainty of every frame's joints: that of the coarse frame nearest in time.
@@ -70,7 +70,7 @@ class ClipFit {
   const TrackSequenceOptions& options_;
   TrackSequenceSummary& summary_;
   int threads_;
-  TrackSequenceInput input_;  ///< what was given, with the observations below in place of what cannot be meant
+  TrackSequenceInput input_;  ///< as given, with the cleaned observations below
   KeypointSequence keypoints_, joints_from_dense_;
   DenseSequence dense_;
   const KeypointSequence* joints_ = nullptr;  ///< to start from and to find cuts by; null: none
@@ -89,29 +89,29 @@ class ClipFit {
   std::optional<StageRunner> runner_;
 };
 
-/// Fits the body to a clip with what the input names and nothing else: without a prior and a lifter there are joint
-/// limits and joint hypotheses (TrackSequence() fills in the built-in ones). Throws std::invalid_argument when the
-/// input contradicts itself; a clip in which nothing can be estimated gives status kFailure with a message.
+/// Fits the body to a clip with the models that the input names: without a prior and a lifter there are joint limits
+/// and joint hypotheses (TrackSequence() fills in the built-in models). Throws std::invalid_argument when the input
+/// contradicts itself; a clip in which nothing can be estimated gives status kFailure with a message.
 TrackSequenceResult FitClip(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
-// The motion level of a clip, and the smoothness that suits it.
+// Smoothness from the motion of the clip.
 //
-// One σ of acceleration for everybody is too stiff for a break dance and too loose for somebody who stands: the first
-// loses the motion, the second follows the detector's noise. So it is with one σ for all joints: arms swing while the
-// spine hardly moves. A first solve shows which is which.
+// One σ of acceleration for all clips is too small for a break dance, whose motion it damps, and too large for somebody
+// who stands, where the track follows the detector's noise. The same holds for one σ for all joints: arms swing while
+// the spine hardly moves. So σ is estimated from a first solution.
 
-inline constexpr double kSigmaOfRms = 4;                        ///< σ of what moves with an rms of 1
-inline constexpr double kLeastSigma = 17, kMostSigma = 40;      ///< m/s², of the whole clip
-inline constexpr double kLeastOfJoint = 10, kMostOfJoint = 60;  ///< m/s², of a joint
+inline constexpr double kSigmaOfRms = 4;                     ///< ratio of σ to the rms acceleration
+inline constexpr double kMinSigma = 17, kMaxSigma = 40;      ///< m/s², of the whole clip
+inline constexpr double kMinOfJoint = 10, kMaxOfJoint = 60;  ///< m/s², of a joint
 
 /// Root mean square over the frames of a shot of lever × angular acceleration (JointLevers, residuals/
 /// acceleration_cost.h) of each body joint, m/s²; 0 for joints that are not estimated and without three consecutive
 /// frames. Differences of neighbouring frames: of a solve at about TrackSequenceOptions::coarse_rate.
 std::vector<double> TipAccelerationRms(const SequenceProblem& problem, int shot = 0);
 
-/// Smoothness of each shot. Each joint's σ of acceleration is kSigmaOfRms × its rms, in [kLeastOfJoint, kMostOfJoint],
+/// Smoothness of each shot. Each joint's σ of acceleration is kSigmaOfRms × its rms, in [kMinOfJoint, kMaxOfJoint],
 /// and both common ones are those of `before`, scaled by the same factor: that of the tips becomes kSigmaOfRms × the
-/// root mean square over the estimated joints, in [kLeastSigma, kMostSigma]. A shot in which nothing accelerates keeps
+/// root mean square over the estimated joints, in [kMinSigma, kMaxSigma]. A shot in which nothing accelerates keeps
 /// `before`.
 std::vector<Smoothness> FitSmoothness(const SequenceProblem& problem, const Smoothness& before);
 

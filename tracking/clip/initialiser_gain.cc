@@ -29,7 +29,7 @@ MedianAndP95 Summarise(const std::vector<double>& values) {
   return {SortedPercentile(sorted, 50), SortedPercentile(sorted, 95)};
 }
 
-/// The first betas that the body and the compiled landmarks know.
+/// The first betas, as many as the body and the compiled landmarks have.
 Eigen::VectorXd BetasFor(const BodyModel& body, const Eigen::VectorXd& betas, Eigen::Index count) {
   Eigen::VectorXd taken = Eigen::VectorXd::Zero(count);
   const Eigen::Index given = std::min<Eigen::Index>({betas.size(), count, body.num_betas()});

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The terms that the tracker knows: the one list to which a new term is added.
+/// List of the tracker's terms, to which a new term is added.
 ///
-/// Cost of a frame, in the order in which terms are summed; each has its law in its own header:
+/// Cost of a frame, in the order in which terms are summed; each formula is explained in the term's header:
 ///   ½ Σ ρ(‖(π(x_k) − y_k)/σ_k‖²)              2D joints (terms/landmarks.h), L_f of paper A
 /// + ½ Σ ρ(‖W_k (π(x_k) − y_k)‖²)              dense keypoints (terms/dense/dense.h), L_f
 /// + ½ λ_r Σ ρ(‖r_uv‖²)                        dense keypoints in UV (terms/rendered_uv/rendered_uv_term.h), L_r
-/// + ½ Σ w ρ(‖r‖²)                             silhouette and parts (terms/part_labels/part_label_term.h)
+/// + ½ Σ w ρ(‖r‖²)                             silhouette, part labels (terms/part_labels/part_label_term.h)
 /// + ½ λ_d Σ ρ(‖W (x − x_hips − y)‖²)          the lifter (terms/lifted/lifted_pose.h), L_d
 /// + ½ Σ ρ(‖W (x − a)‖²)                       standing feet (terms/ground_contact/ground_contact.h)
 /// + ½ w min_k (‖L_k (x − μ_k)‖² + e_k)        pose prior (terms/pose_prior/pose_prior.h)
@@ -27,9 +27,9 @@ namespace bodyloom {
 struct PlanEntry;
 
 struct TermKind {
-  /// Whether it runs, and why; more than one entry where parts of it are switched by themselves.
+  /// True if the term runs, with the reason; one entry for each part that is switched separately.
   std::vector<PlanEntry> (*plan)(const TrackSequenceInput&, const TrackSequenceOptions&);
-  /// Null where the clip has no need of it.
+  /// Makes the term; null if the clip does not need it.
   std::unique_ptr<ClipTerm> (*make)(const ClipTermInput&);
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The plan of a run: which terms and steps take part, and why.
+/// The plan of a run: its terms and steps, with the reasons for including or skipping them.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace bodyloom {
 
-/// What TrackSequence would do with this input: no computation.
+/// The terms and steps that TrackSequence would run for this input, without running them.
 std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
 }  // namespace bodyloom

@@ -30,7 +30,7 @@ constexpr int kFewDense = 20;
 
 FrameStatus StatusOf(const FrameData& frame) {
   const size_t dense = frame.Get<DenseTerm>().size(), joints = frame.Get<LandmarkTerm>().seen.size();
-  const PartLabelMatches* labels = frame.Get<PartLabelTerm>().term;
+  const PartLabelMatches* labels = frame.Get<PartLabelTerm>().matches;
   if (labels != nullptr && labels->num_person_pixels() > 0) return FrameStatus::kTracked;
   if (joints == 0 && dense == 0) return FrameStatus::kInterpolated;
   if (joints < kFewLandmarks && dense < kFewDense) return FrameStatus::kWeak;
@@ -117,18 +117,10 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
   if (input.dense != nullptr) summary.terms.push_back(dense);
 }
 
-void SummariseImageTerms(const SequenceProblem& problem, TrackSequenceSummary* summary) {
-  const bool any = std::any_of(problem.frames.begin(), problem.frames.end(), [](const FrameData& frame) {
-    return frame.Get<RenderedUvTerm>().term != nullptr || frame.Get<PartLabelTerm>().term != nullptr;
-  });
-  if (!any) return;
-  FrameResiduals residuals;
-  FrameEvaluator evaluator;
-  FrameSystem system;
-  for (size_t t = 0; t < problem.frames.size(); ++t) {
-    evaluator.Evaluate(problem.layout, problem.frames[t], problem.states[t], problem.betas, problem.log_focal, false,
-                       &system, &residuals);
-    summary->num_observations += problem.frames[t].Get<PartLabelTerm>().num_rows();
+void SummariseImageTerms(const SequenceProblem& problem, const FrameResiduals& residuals,
+                         TrackSequenceSummary* summary) {
+  for (const FrameData& frame : problem.frames) {
+    summary->num_observations += frame.Get<SilhouetteTerm>().num_rows() + frame.Get<PartLabelTerm>().num_rows();
   }
   for (const char* term : {"rendered UV", "silhouette", "part labels"}) {
     const auto at = residuals.find(term);

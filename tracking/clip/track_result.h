@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The track and the summary from the solved problem.
+/// Fills the track and the summary from the solved problem.
 #pragma once
 
+#include "tracking/problem/frame_accumulator.h"
 #include "tracking/problem/sequence_problem.h"
 #include "tracking/problem/track_input.h"
 #include "tracking/problem/track_options.h"
@@ -10,15 +11,16 @@
 
 namespace bodyloom {
 
-/// By how much of the frame is observed: tracked, weak or interpolated.
+/// Status by the amount of observations in the frame: tracked, weak or interpolated.
 FrameStatus StatusOf(const FrameData& frame);
 
 /// Fills result->track (poses, camera, status, joints, coco17) and the summary's errors and frame counts.
 void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, const ObservedLandmarks& landmarks,
                TrackSequenceResult* result);
 
-/// Appends to the summary how the rendered UV and the silhouette with the part labels fit the whole clip, those that
-/// ran.
-void SummariseImageTerms(const SequenceProblem& problem, TrackSequenceSummary* summary);
+/// Appends the errors of rendered UV, silhouette and part labels to the summary, for those that ran; `residuals` are of
+/// the whole clip (CostsByTerm()).
+void SummariseImageTerms(const SequenceProblem& problem, const FrameResiduals& residuals,
+                         TrackSequenceSummary* summary);
 
 }  // namespace bodyloom

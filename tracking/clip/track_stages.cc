@@ -9,7 +9,7 @@
 namespace bodyloom {
 
 Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& options, bool coarse_to_fine) {
-  // Without an initialiser the start is a guess: nothing keeps the track near it in the end.
+  // Without an initialiser the start is a guess, to which the final track is not pulled.
   const double pull = input.initialiser == nullptr ? 0.0 : options.initialiser_weight;
   const int max = options.max_iterations, fine = coarse_to_fine ? options.max_fine_iterations : max;
   Stages stages{
@@ -50,8 +50,8 @@ bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem
   solve.max_iterations = stage.max_iterations;
   solve.num_threads = num_threads_;
   solve.function_tolerance = stage.tolerance;
-  // Ceres drops the step that it finds too small to go on from, which chain keeps. Where all stages are Ceres', each
-  // goes on until that step is a tenth of what it may be for chain.
+  // Ceres discards the last step when it is too small to continue, whereas chain keeps it. Where all stages run in
+  // Ceres, the tolerance is therefore a tenth of chain's.
   if (options_.solver == SequenceSolver::kCeres && options_.function_tolerance == 0) solve.function_tolerance /= 10;
   if (options_.progress) {
     solve.on_iteration = [&](int iteration, double cost) {
@@ -67,7 +67,7 @@ bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem
   summary_->final_cost = report.final_cost;
   summary_->status = report.status;
   summary_->message = report.message;
-  clock_->Book(stage.name);
+  clock_->Record(stage.name);
   if (solver == SequenceSolver::kCeres) {
     CeresSummary& ceres = summary_->ceres;
     ceres = {true, report.iterations, report.initial_cost, report.final_cost, report.gradient_max_norm, report.seconds};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The solves of TrackSequence(), one after the other, in a table.
+/// Table of the successive solves of TrackSequence().
 #pragma once
 
 #include <functional>
@@ -21,14 +21,14 @@ struct Stage {
   double from, to;  ///< of the whole run, for progress
 };
 
-/// Coarse in time first: what a frame cannot decide alone its neighbours decide together, and 15 frames a second are
-/// enough to see how a person moves. All stages but the last solve the coarse frames.
+/// Coarse in time first: neighbouring frames resolve the ambiguities of a single frame, and 15 frames a second are
+/// enough for human motion. All stages but the last solve the coarse frames.
 struct Stages {
   Stage near_start;  ///< pulled towards the start, wide kernels; not from an initialiser
-  Stage coarse;      ///< what was seen against the priors
+  Stage coarse;      ///< observations and priors
   Stage again;       ///< with the clip's own smoothness and its ground
   Stage round;       ///< each round of a term (problem/clip_term.h); its name and iterations are the term's
-  Stage all;         ///< every frame: few steps when a coarse solve has converged in what converges slowly
+  Stage all;         ///< every frame: few steps after a coarse solve, in which the slow directions have converged
   Stage finish;      ///< every frame by Ceres, to its own convergence (SequenceSolver::kChainThenCeres)
 };
 /// `coarse_to_fine`: the coarse frames are fewer than all.

@@ -76,7 +76,7 @@ VectorXd JointSigmaOf(const JointSpread& spread, const LiftedPose& lifted, const
   return VectorXd::NullaryExpr(J, [&](Eigen::Index j) {
     const Matrix3d E = kErringTogether * spread.about_hips[j];
     const Matrix3d L = camera_from_state.transpose() * lifted.JointCovariance(static_cast<int>(j)) * camera_from_state;
-    // (E⁻¹ + L⁻¹)⁻¹ without the inverse of either: nothing moves a joint that is the middle of the hips, E = 0.
+    // (E⁻¹ + L⁻¹)⁻¹ without either inverse, since E = 0 for a joint that is the middle of the hips.
     const Matrix3d both = L - L * (L + E).inverse() * L;
     return std::sqrt(both.trace() / 3 + kModelSigmaM * kModelSigmaM);
   });
@@ -99,7 +99,7 @@ PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* 
   const auto T = static_cast<Eigen::Index>(problem.states.size());
   PositionSigma sigma = PositionSigma::Unknown(T, problem.layout.model->num_joints());
   for (FrameData& frame : problem.frames) frame.Get<LiftedPoseTerm>().weight = 0;
-  // More than chain takes: the spread is stated without them, which is too much rather than too little.
+  // More than chain supports: the covariance is computed without them, which overestimates it.
   if (NumFarRows(problem) > ChainProblem::kMaxFarRows) problem.couplings.clear();
   ChainProblem chain(problem, false, false, num_threads);
   if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Uncertainty of the joints' places: from the normal equations that the solve used and, where the lifter looked, from
-/// the spread of its own prediction (docs/tracking.md, "Uncertainty").
+/// Uncertainty of the joints' positions, from the normal equations of the solve and, where the lifter ran, from the
+/// covariance of its prediction (docs/tracking.md, "Uncertainty").
 ///
 /// With D_j the derivative of joint j by a frame's columns and by the shared values, D_h that of the middle of the hip
-/// joints and P the covariance of these values (chain/chain_covariance.h), what was measured leaves
+/// joints and P the covariance of these values (chain/chain_inverse.h), the measurements give
 ///   E_j = (D_j − D_h) P (D_j − D_h)ᵀ       about the middle of the hips,   E_h = D_h P D_hᵀ for that middle itself.
-/// Without the lifter C_j = E_j. Its density has the covariance L_j there (terms/lifted/lifted_pose.h): it has learned
-/// how detectors err and which depths a picture leaves open, and the cost has not. So P is taken without it, and both
-/// are joined,
+/// Without the lifter C_j = E_j. The lifter's density has the covariance L_j (terms/lifted/lifted_pose.h), which is
+/// learned from detectors' errors and from the depth ambiguity of a single image; the cost models neither. So P is
+/// computed without the lifter's term, and both are joined,
 ///   C_j = ((n E_j)⁻¹ + L_j⁻¹)⁻¹ + f² I,
-/// with n = 4, because the coarse frames' detections are not independent, and f = 1 cm, because the body is not the
-/// person's and its joints are not the detector's; both chosen on motion that no table tests on
+/// with n = 4, because the coarse frames' detections are not independent, and f = 1 cm, because the model's body
+/// differs from the person's and its joints from the detector's; both chosen on motion outside all test sets
 /// (docs/lab/joint_sigma.md). The standard deviation of one axis is σ_j = √(trace(C_j) / 3).
 #pragma once
 
@@ -24,7 +24,7 @@
 
 namespace bodyloom {
 
-/// What one frame's normal equations say of its joints: covariances in the axes of the state, m².
+/// Covariances of a frame's joints by its normal equations, in the axes of the state, m².
 struct JointSpread {
   std::vector<Eigen::Matrix3d> about_hips;  ///< J: of a joint's position relative to the middle of the hip joints
   /// Of that middle. For weak perspective the depth of the whole body is not part of it.
@@ -33,17 +33,17 @@ struct JointSpread {
   [[nodiscard]] double HipsSigma() const;
 };
 
-/// By the covariance P of the frame's columns and the shared values. A body without joints named l_hip and r_hip has
-/// its root joint for their middle.
+/// From the covariance P of the frame's columns and the shared values. For a body without joints named l_hip and r_hip
+/// the root joint is their middle.
 JointSpread JointSpreadOf(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas,
                           const Eigen::MatrixXd& P);
 
 /// J standard deviations σ_j, metres, with C_j = E_j.
 Eigen::VectorXd JointSigmaOf(const JointSpread& spread);
-/// The same of both together; `camera_from_state` turns the state's axes into those of the frame's camera.
+/// The same with both joined; `camera_from_state` rotates the state's axes to those of the frame's camera.
 Eigen::VectorXd JointSigmaOf(const JointSpread& spread, const LiftedPose& lifted,
                              const Eigen::Matrix3d& camera_from_state);
-/// The same of the lifter alone: C_j = L_j + f² I.
+/// The same for the lifter alone: C_j = L_j + f² I.
 Eigen::VectorXd JointSigmaOf(const LiftedPose& lifted, int num_joints);
 
 /// Standard deviations of positions, metres, one axis.
@@ -55,19 +55,19 @@ struct PositionSigma {
   static PositionSigma Unknown(Eigen::Index num_frames, int num_joints);
 };
 
-/// Of the problem at its current state, with shape and focal length unknown. Observations, priors and smoothness count
-/// with the weights they have in the cost, so a limb that nobody saw has the spread of the prior. NaN where the system
-/// is singular. Linear in the number of frames; the same bytes for any number of threads. `focal_log_sigma`, unless
-/// null, becomes the standard deviation of the logarithm of the focal length; it stays as it is when the focal length
-/// is known or the system singular.
+/// For the problem at its current state, with shape and focal length unknown. Observations, priors and smoothness have
+/// the weights of the cost, so a limb that was not observed has the standard deviation of the prior. NaN where the
+/// system is singular. Linear in the number of frames; the same bytes for any number of threads. `focal_log_sigma`,
+/// unless null, is set to the standard deviation of the logarithm of the focal length; it is unchanged when the focal
+/// length is known or the system singular.
 PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma = nullptr);
 
 /// Standard deviation of the logarithm of the focal length by the whole problem's normal equations, without the frames'
 /// covariances; NaN when it is known or the system singular.
 double FocalLogSigmaOf(const SequenceProblem& problem, int num_threads);
 
-/// root_sigma of a track whose focal length was held while it is known to `log_sigma` of its logarithm: a person's
-/// distance from the camera, z, follows it, σ² + (log_sigma z)²/3.
+/// Adds the uncertainty of a focal length that was held during the solve, `log_sigma` of its logarithm, to root_sigma
+/// of a track: the distance z from the camera is proportional to it, so σ² becomes σ² + (log_sigma z)²/3.
 void AddFocalSpread(double log_sigma, Track* track);
 
 }  // namespace bodyloom

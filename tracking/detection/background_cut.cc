@@ -21,9 +21,9 @@ constexpr double kPrior = 4, kSmooth = 8, kByColours = 0.5;
 constexpr double kInsideReach = 0.02, kOutsideReach = 0.03, kFarthestOutside = 0.06, kRing = 0.12, kClearInside = 0.03;
 constexpr double kOutliers = 0.01, kColours = 256.0 * 256 * 256;
 constexpr double kDarkestShadow = 0.55, kShadowCost = 2.5;
-constexpr double kLeastGain = 0.7, kMostGain = 1.4;
+constexpr double kMinGain = 0.7, kMaxGain = 1.4;
 constexpr double kSmallPiece = 0.1;
-constexpr double kUnlikeSigmas = 4, kMostUnlike = 0.1;
+constexpr double kUnlikeSigmas = 4, kMaxMaskError = 0.1;
 constexpr int kGainStep = 7;  ///< pixels between those that a gain is asked of
 constexpr size_t kFewestForGain = 100;
 
@@ -43,14 +43,14 @@ double Square(double x) { return x * x; }
 
 class MaskCut {
  public:
-  MaskCut(const Image& picture, const cv::Mat& coarse, const cv::Mat& others, const StillBackground& background,
+  MaskCut(const Image& image, const cv::Mat& coarse, const cv::Mat& others, const StillBackground& background,
           const ColourDensity& person)
-      : picture_(picture), background_(background), person_(person) {
+      : image_(image), background_(background), person_(person) {
     const cv::Rect box = cv::boundingRect(coarse);
     extent_ = std::max(box.width, box.height);
     const int margin = static_cast<int>(std::ceil(kRing * extent_)) + 1;
     window_ = cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin) &
-              cv::Rect(0, 0, picture.width, picture.height);
+              cv::Rect(0, 0, image.width, image.height);
     distance_ = SignedDistance(coarse(window_));
     if (!others.empty()) distance_.setTo(-2 * kRing * extent_, others(window_) & ~coarse(window_));
     FindGain(coarse);
@@ -61,8 +61,7 @@ class MaskCut {
     }
   }
 
-  /// Whether what lies around the person is what the background says: else the camera has moved, or the light is
-  /// another.
+  /// True if the pixels around the person agree with the background; otherwise the camera or the light has changed.
   [[nodiscard]] bool SeesTheBackground() const {
     int known = 0, unlike = 0;
     for (int y = 0; y < window_.height; ++y) {
@@ -72,11 +71,11 @@ class MaskCut {
         unlike += Differences(x, y).shaded > Square(kUnlikeSigmas * SigmaAt(x, y)) ? 1 : 0;
       }
     }
-    return unlike <= kMostUnlike * known;
+    return unlike <= kMaxMaskError * known;
   }
 
   LabelImage Find() {
-    // What lies too far out is no node.
+    // Pixels too far outside get no node.
     nodes_ = cv::Mat(window_.size(), CV_32SC1, cv::Scalar(-1));
     const int count = window_.area();
     cv::detail::GCGraph<double> graph(count, 4 * count);
@@ -85,7 +84,7 @@ class MaskCut {
         if (IsFar(x, y)) continue;
         const int node = nodes_.at<int>(y, x) = graph.addVtx();
         const auto [in, out] = Costs(x, y);
-        // In is the source's side: what it costs to be out is cut from the source.
+        // The source side is the person: the cost of being outside is the capacity of the edge from the source.
         graph.addTermWeights(node, out, in);
       }
     }
@@ -104,26 +103,26 @@ class MaskCut {
 
  private:
   [[nodiscard]] bool IsFar(int x, int y) const { return distance_.at<float>(y, x) < -kFarthestOutside * extent_; }
-  /// Surely beside the person, and not somebody else.
+  /// True for pixels in the ring around the person, which show neither the person nor somebody else.
   [[nodiscard]] bool IsAround(int x, int y) const {
     return IsFar(x, y) && distance_.at<float>(y, x) > -kRing * extent_;
   }
-  [[nodiscard]] const uint8_t* ColourAt(int x, int y) const { return picture_.pixel(window_.x + x, window_.y + y); }
+  [[nodiscard]] const uint8_t* ColourAt(int x, int y) const { return image_.pixel(window_.x + x, window_.y + y); }
   [[nodiscard]] float SigmaAt(int x, int y) const {
-    return background_.sigma[size_t(window_.y + y) * picture_.width + window_.x + x];
+    return background_.sigma[size_t(window_.y + y) * image_.width + window_.x + x];
   }
   [[nodiscard]] std::array<double, 3> BehindAt(int x, int y) const {
     const uint8_t* b = background_.colours.pixel(window_.x + x, window_.y + y);
     return {gain_[0] * b[0], gain_[1] * b[1], gain_[2] * b[2]};
   }
 
-  /// Over the whole picture, outside of the coarse mask: others may stand there, but hardly on most of it.
+  /// Estimates the gains over the whole image outside the coarse mask. Other people cover at most a minor part of it.
   void FindGain(const cv::Mat& coarse) {
     std::array<std::vector<double>, 3> ratios;
-    for (int y = 0; y < picture_.height; y += kGainStep) {
-      for (int x = 0; x < picture_.width; x += kGainStep) {
-        if (coarse.at<uchar>(y, x) != 0 || background_.sigma[size_t(y) * picture_.width + x] <= 0) continue;
-        const uint8_t *seen = picture_.pixel(x, y), *behind = background_.colours.pixel(x, y);
+    for (int y = 0; y < image_.height; y += kGainStep) {
+      for (int x = 0; x < image_.width; x += kGainStep) {
+        if (coarse.at<uchar>(y, x) != 0 || background_.sigma[size_t(y) * image_.width + x] <= 0) continue;
+        const uint8_t *seen = image_.pixel(x, y), *behind = background_.colours.pixel(x, y);
         for (int c = 0; c < 3; ++c) {
           if (behind[c] >= 32 && seen[c] < 250) ratios[c].push_back(double(seen[c]) / behind[c]);
         }
@@ -131,11 +130,11 @@ class MaskCut {
     }
     for (int c = 0; c < 3; ++c) {
       if (ratios[c].size() < kFewestForGain) continue;
-      gain_[c] = std::clamp(Percentile(ratios[c], 50), kLeastGain, kMostGain);
+      gain_[c] = std::clamp(Percentile(ratios[c], 50), kMinGain, kMaxGain);
     }
   }
 
-  /// Squared, of a pixel's colour from the background's, as it is and in the shadow that is nearest.
+  /// Squared distances of a pixel's colour from the background's, unshaded and in the nearest shadow.
   struct FromBackground {
     double square = 0, shaded = 0;
   };
@@ -153,7 +152,7 @@ class MaskCut {
     return from;
   }
 
-  /// −log of how likely the background shows this colour.
+  /// −log of the likelihood of this colour under the background.
   [[nodiscard]] double BackgroundCost(int x, int y) const {
     const double sigma = SigmaAt(x, y);
     const auto [square, shaded] = Differences(x, y);
@@ -165,7 +164,7 @@ class MaskCut {
     return std::min(cost(square), cost(shaded) + kShadowCost);
   }
 
-  /// Of being in and of being out.
+  /// Costs of being inside and of being outside.
   [[nodiscard]] std::array<double, 2> Costs(int x, int y) const {
     const double distance = distance_.at<float>(y, x) / extent_;
     const double prior = distance > 0 ? kPrior * std::min(1.0, distance / kInsideReach)
@@ -214,7 +213,7 @@ class MaskCut {
     }
   }
 
-  /// What is less than a tenth of the largest piece is not a limb that something hides the joint of.
+  /// Drops pieces smaller than a tenth of the largest: too small for a limb whose joint is occluded.
   void LeaveOutStrays(LabelImage* mask) const {
     const cv::Mat found(window_.size(), CV_8UC1, mask->labels.data());
     cv::Mat pieces, stats, middles;
@@ -231,7 +230,7 @@ class MaskCut {
     }
   }
 
-  const Image& picture_;
+  const Image& image_;
   const StillBackground& background_;
   const ColourDensity& person_;
   double extent_ = 1;
@@ -243,33 +242,33 @@ class MaskCut {
 
 }  // namespace
 
-std::optional<LabelImage> CutFromBackground(const Image& picture, std::span<const uint8_t> coarse,
+std::optional<LabelImage> CutFromBackground(const Image& image, std::span<const uint8_t> coarse,
                                             std::span<const uint8_t> others, const StillBackground& background,
                                             const ColourDensity& person) {
-  const size_t area = size_t(picture.width) * picture.height;
-  BODYLOOM_CHECK(!picture.empty() && coarse.size() == area && (others.empty() || others.size() == area) &&
-                     background.sigma.size() == area && background.colours.bgr.size() == picture.bgr.size(),
-                 "cut from the background: a picture of ", picture.width, "x", picture.height, ", masks of ",
-                 coarse.size(), " and ", others.size(), " pixels, a background of ", background.sigma.size());
-  const cv::Mat mask = MaskMat(coarse, picture.width, picture.height);
+  const size_t area = size_t(image.width) * image.height;
+  BODYLOOM_CHECK(!image.empty() && coarse.size() == area && (others.empty() || others.size() == area) &&
+                     background.sigma.size() == area && background.colours.bgr.size() == image.bgr.size(),
+                 "cut from the background: an image of ", image.width, "x", image.height, ", masks of ", coarse.size(),
+                 " and ", others.size(), " pixels, a background of ", background.sigma.size());
+  const cv::Mat mask = MaskMat(coarse, image.width, image.height);
   if (cv::countNonZero(mask) == 0) return LabelImage();
-  const cv::Mat other = others.empty() ? cv::Mat() : MaskMat(others, picture.width, picture.height);
-  MaskCut cut(picture, mask, other, background, person);
+  const cv::Mat other = others.empty() ? cv::Mat() : MaskMat(others, image.width, image.height);
+  MaskCut cut(image, mask, other, background, person);
   return cut.SeesTheBackground() ? std::optional(cut.Find()) : std::nullopt;
 }
 
-void AddClearInside(const Image& picture, std::span<const uint8_t> coarse, ColourDensity* person) {
-  BODYLOOM_CHECK(!picture.empty() && coarse.size() == size_t(picture.width) * picture.height,
-                 "colours of a mask: a picture of ", picture.width, "x", picture.height, ", a mask of ", coarse.size(),
+void AddClearInside(const Image& image, std::span<const uint8_t> coarse, ColourDensity* person) {
+  BODYLOOM_CHECK(!image.empty() && coarse.size() == size_t(image.width) * image.height,
+                 "colours of a mask: an image of ", image.width, "x", image.height, ", a mask of ", coarse.size(),
                  " pixels");
-  const cv::Mat mask = MaskMat(coarse, picture.width, picture.height);
+  const cv::Mat mask = MaskMat(coarse, image.width, image.height);
   const cv::Rect box = cv::boundingRect(mask);
   if (box.area() == 0) return;
   const double deep = kClearInside * std::max(box.width, box.height);
   const cv::Mat distance = SignedDistance(mask(box));
   for (int y = 0; y < box.height; ++y) {
     for (int x = 0; x < box.width; ++x) {
-      if (distance.at<float>(y, x) > deep) person->Add(picture.pixel(box.x + x, box.y + y));
+      if (distance.at<float>(y, x) > deep) person->Add(image.pixel(box.x + x, box.y + y));
     }
   }
 }

@@ -31,9 +31,9 @@ ParserWeights CheckedParser(ParserWeights weights) {
   return weights;
 }
 
-/// The mask of the picture as a smaller picture has it: where at least half of a pixel is inside.
-std::vector<uint8_t> ResizedMask(std::span<const uint8_t> mask, const Image& picture, int width, int height) {
-  Image grey(picture.width, picture.height);
+/// The mask at a smaller image size: pixels at least half of which are inside.
+std::vector<uint8_t> ResizedMask(std::span<const uint8_t> mask, const Image& image, int width, int height) {
+  Image grey(image.width, image.height);
   for (size_t i = 0; i < mask.size(); ++i) std::fill_n(&grey.bgr[3 * i], 3, mask[i] != 0 ? uint8_t{255} : uint8_t{0});
   const Image small = Resized(grey, width, height);
   std::vector<uint8_t> result(static_cast<size_t>(width) * height);
@@ -41,12 +41,12 @@ std::vector<uint8_t> ResizedMask(std::span<const uint8_t> mask, const Image& pic
   return result;
 }
 
-/// The answers of the network between the pixels of its picture.
+/// Scores of the network, interpolated bilinearly between the pixels of its input image.
 class Answers {
  public:
   Answers(const PersonLayers& layers, std::vector<float> numbers) : layers_(layers), numbers_(std::move(numbers)) {}
 
-  /// The class at a place of the layers' picture, pixels.
+  /// The class with the largest score at a position in the layers' image, pixels.
   [[nodiscard]] int ClassAt(double x, double y) const {
     const double u = std::clamp(x - layers_.x, 0.0, layers_.width - 1.0);
     const double v = std::clamp(y - layers_.y, 0.0, layers_.height - 1.0);
@@ -71,20 +71,20 @@ class Answers {
 }  // namespace
 
 PersonLayers ParserLayers(const PersonPhoto& photo, int num_threads) {
-  const Image& picture = *photo.picture;
-  BODYLOOM_CHECK(photo.mask.size() == static_cast<size_t>(picture.width) * picture.height &&
-                     picture.width == photo.camera.width && picture.height == photo.camera.height,
-                 "clothes parser: a picture of ", picture.width, "x", picture.height, " with a mask of ",
-                 photo.mask.size(), " pixels and a camera of ", photo.camera.width, "x", photo.camera.height);
-  PersonLayers layers = BoxAround(picture.width, picture.height, photo.mask, kReach);
+  const Image& image = *photo.image;
+  BODYLOOM_CHECK(photo.mask.size() == static_cast<size_t>(image.width) * image.height &&
+                     image.width == photo.camera.width && image.height == photo.camera.height,
+                 "clothes parser: an image of ", image.width, "x", image.height, " with a mask of ", photo.mask.size(),
+                 " pixels and a camera of ", photo.camera.width, "x", photo.camera.height);
+  PersonLayers layers = BoxAround(image.width, image.height, photo.mask, kReach);
   const size_t pixels = layers.pixels();
   layers.planes.assign(PersonPlane::kNormal * pixels, 0);
   if (pixels == 0) return layers;
-  ForEachPixel(layers, picture.width, picture.height, [&](int x, int y, size_t i) {
-    if (photo.mask[static_cast<size_t>(y) * picture.width + x] == 0) return;
+  ForEachPixel(layers, image.width, image.height, [&](int x, int y, size_t i) {
+    if (photo.mask[static_cast<size_t>(y) * image.width + x] == 0) return;
     layers.planes[PersonPlane::kAlpha * pixels + i] = 1;
     for (size_t c = 0; c < 3; ++c) {
-      layers.planes[(PersonPlane::kColour + c) * pixels + i] = static_cast<float>(picture.pixel(x, y)[2 - c]) / 255;
+      layers.planes[(PersonPlane::kColour + c) * pixels + i] = static_cast<float>(image.pixel(x, y)[2 - c]) / 255;
     }
   });
   SurfacePlanes(*photo.body, *photo.rest_vertices, num_threads).Draw(*photo.vertices_in_camera, photo.camera, &layers);
@@ -96,36 +96,36 @@ ClothesParser::ClothesParser(ParserWeights weights)
 
 std::vector<uint8_t> ClothesParser::Labels(const PersonPhoto& photo, int num_threads) {
   const double factor =
-      PictureUnetScale(PixelsPerMetre(photo.camera, photo.vertices_in_camera->col(2).mean()), pixels_per_metre_);
+      ImageUnetScale(PixelsPerMetre(photo.camera, photo.vertices_in_camera->col(2).mean()), pixels_per_metre_);
   Image smaller;
   std::vector<uint8_t> smaller_mask;
   PersonPhoto at_known_size = photo;
   if (factor < 1) {
     at_known_size.camera = ScaledCamera(photo.camera, factor);
-    smaller = Resized(*photo.picture, at_known_size.camera.width, at_known_size.camera.height);
-    smaller_mask = ResizedMask(photo.mask, *photo.picture, smaller.width, smaller.height);
-    at_known_size.picture = &smaller, at_known_size.mask = smaller_mask;
+    smaller = Resized(*photo.image, at_known_size.camera.width, at_known_size.camera.height);
+    smaller_mask = ResizedMask(photo.mask, *photo.image, smaller.width, smaller.height);
+    at_known_size.image = &smaller, at_known_size.mask = smaller_mask;
   }
   const PersonLayers layers = ParserLayers(at_known_size, num_threads);
   std::vector<uint8_t> labels(photo.mask.size(), 0);
   if (layers.pixels() == 0) return labels;
   const Answers answers(layers, network_.Run(layers.width, layers.height, layers.planes));
-  for (int y = 0; y < photo.picture->height; ++y) {
-    for (int x = 0; x < photo.picture->width; ++x) {
-      const size_t i = static_cast<size_t>(y) * photo.picture->width + x;
+  for (int y = 0; y < photo.image->height; ++y) {
+    for (int x = 0; x < photo.image->width; ++x) {
+      const size_t i = static_cast<size_t>(y) * photo.image->width + x;
       if (photo.mask[i] == 0) continue;
       const int of_class = answers.ClassAt(factor * (x + 0.5) - 0.5, factor * (y + 0.5) - 0.5);
       labels[i] = static_cast<uint8_t>(kFirstClass + of_class);
     }
   }
-  RelabelByColour(*photo.picture, labels);
+  RelabelByColour(*photo.image, labels);
   return labels;
 }
 
-std::vector<uint8_t> ClothesParser::Labels(const Image& picture, std::span<const uint8_t> mask, const BodyModel& body,
+std::vector<uint8_t> ClothesParser::Labels(const Image& image, std::span<const uint8_t> mask, const BodyModel& body,
                                            const Track& track, const Camera& camera, int num_threads) {
   const MatrixX3d rest = ShapeVertices(body, track.motion.betas), vertices = TrackVertices(body, track, 0);
-  return Labels({&picture, mask, &body, &rest, &vertices, camera}, num_threads);
+  return Labels({&image, mask, &body, &rest, &vertices, camera}, num_threads);
 }
 
 namespace {
@@ -134,11 +134,11 @@ constexpr float kLightnessWeight = 0.5F;
 constexpr float kRatio = 0.5F;
 constexpr size_t kFewestPixels = 50;
 
-/// (L/2, a, b) of some pixels of the picture.
-std::vector<ChannelTriple> LabOf(const Image& picture, const std::vector<size_t>& pixels) {
+/// (L/2, a, b) of some pixels of the image.
+std::vector<ChannelTriple> LabOf(const Image& image, const std::vector<size_t>& pixels) {
   cv::Mat colours(1, static_cast<int>(pixels.size()), CV_32FC3);
   for (size_t k = 0; k < pixels.size(); ++k) {
-    const uint8_t* bgr = &picture.bgr[3 * pixels[k]];
+    const uint8_t* bgr = &image.bgr[3 * pixels[k]];
     colours.at<cv::Vec3f>(static_cast<int>(k)) = cv::Vec3f(bgr[0], bgr[1], bgr[2]) / 255;
   }
   cv::cvtColor(colours, colours, cv::COLOR_BGR2Lab);
@@ -156,16 +156,16 @@ float Distance(const ChannelTriple& a, const ChannelTriple& b) {
 
 }  // namespace
 
-void RelabelByColour(const Image& picture, std::span<uint8_t> labels) {
-  BODYLOOM_CHECK(3 * labels.size() == picture.bgr.size(), "labels by colour: ", labels.size(), " labels for ",
-                 picture.width, "x", picture.height, " pixels");
+void RelabelByColour(const Image& image, std::span<uint8_t> labels) {
+  BODYLOOM_CHECK(3 * labels.size() == image.bgr.size(), "labels by colour: ", labels.size(), " labels for ",
+                 image.width, "x", image.height, " pixels");
   std::vector<size_t> pixels;
   for (size_t i = 0; i < labels.size(); ++i) {
     if (labels[i] == 0 || labels[i] >= kNumPersonLabels) continue;
     pixels.push_back(i);
   }
   if (pixels.empty()) return;
-  const std::vector<ChannelTriple> colours = LabOf(picture, pixels);
+  const std::vector<ChannelTriple> colours = LabOf(image, pixels);
   std::array<std::vector<ChannelTriple>, kNumPersonLabels> of_label;
   for (size_t k = 0; k < pixels.size(); ++k) of_label[labels[pixels[k]]].push_back(colours[k]);
   const auto median_of = [&](PersonLabel label) {

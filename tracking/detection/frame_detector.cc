@@ -50,8 +50,8 @@ class BlazePoseFrames : public FrameDetector {
 
 /// At most so many, the first ones.
 template <typename T>
-void KeepFirst(int most, std::vector<T>* people) {
-  if (most > 0 && int(people->size()) > most) people->erase(people->begin() + most, people->end());
+void KeepFirst(int maximum, std::vector<T>* people) {
+  if (maximum > 0 && int(people->size()) > maximum) people->erase(people->begin() + maximum, people->end());
 }
 
 class YoloPoseFrames : public FrameDetector {
@@ -204,8 +204,8 @@ constexpr float kVisible = 0.5F;
 ImageRectangle VisibleRectangle(const DetectedPerson& person) {
   const auto is_visible = [](const Keypoint& p) { return p.confidence >= kVisible; };
   const bool some = std::any_of(person.points.begin(), person.points.end(), is_visible);
-  constexpr double kMost = std::numeric_limits<double>::max();
-  ImageRectangle box = {kMost, kMost, -kMost, -kMost};
+  constexpr double kMaximum = std::numeric_limits<double>::max();
+  ImageRectangle box = {kMaximum, kMaximum, -kMaximum, -kMaximum};
   for (const Keypoint& p : person.points) {
     if (some ? !is_visible(p) : !(p.confidence > 0)) continue;
     box.x0 = std::min(box.x0, double{p.x}), box.x1 = std::max(box.x1, double{p.x});

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Frames of a clip to people with landmarks, whichever networks do it.
+/// Detects people with landmarks in the frames of a clip, by one of several networks.
 ///
 ///   BlazePose (people_detector.h)      follows people from frame to frame; 33 landmarks and a mask
-///   YOLO-pose (keypoint_model.h)       sees everybody in a frame at once
-///   RTMPose (keypoint_model.h)         sees one person in a box; boxes are those of a YOLO, where one is given, else
-///   the
-///                                      rectangle around BlazePose's landmarks (VisibleRectangle())
-/// Results do not depend on the number of threads. A landmark's confidence is what the network says of its visibility.
+///   YOLO-pose (keypoint_model.h)       finds everybody in a frame in one pass
+///   RTMPose (keypoint_model.h)         finds the landmarks of one person in a box, which comes from a YOLO network if
+///                                      one is given, else from BlazePose's landmarks (VisibleRectangle())
+/// Results do not depend on the number of threads. A landmark's confidence is the visibility that the network gives it.
 #pragma once
 
 #include <memory>
@@ -53,20 +52,18 @@ std::unique_ptr<FrameDetector> MakeFrameDetector(const FrameDetectorOptions& opt
 /// "heavy", or the name of the ONNX file without its folder.
 std::string FrameDetectorName(const FrameDetectorOptions& options);
 
-// How far a landmark of BlazePose may be trusted, as the confidence in [0, 1] that the tracker turns into a standard
-// deviation.
-
-/// The landmark's visibility, within [0, 1]; 0 when a coordinate is not finite.
+/// Confidence of a BlazePose landmark, from which the tracker derives a standard deviation: the visibility, limited to
+/// [0, 1]; 0 when a coordinate is not finite.
 double LandmarkConfidence(const PoseLandmark& landmark);
 
-// Where a person is in a picture, by the person's landmarks.
+// Extent of a person in an image, from the person's landmarks.
 
 struct ImageRectangle {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< pixels; empty when x1 < x0
 };
 
-/// The rectangle of the landmarks with a confidence of at least ½, or of all that are seen when none has: those below
-/// are where the detector would put them if they were seen, which may be far from the person. Empty when none is seen.
+/// The rectangle of the landmarks with a confidence of at least ½, or of all detected ones when none has. Landmarks of
+/// lower confidence are guesses, which may be far from the person. Empty when no landmark is detected.
 ImageRectangle VisibleRectangle(const DetectedPerson& person);
 
 }  // namespace bodyloom

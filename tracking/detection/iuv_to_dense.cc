@@ -35,7 +35,7 @@ uint64_t Morton(uint32_t x, uint32_t y) {
   return spread(x) | spread(y) << 1;
 }
 
-/// How many of `total` each part gets: by area, largest remainders first.
+/// Number of pixels of each part, `total` in all: proportional to area, by largest remainders.
 std::array<size_t, kDenseParts + 1> Quotas(const std::array<std::vector<uint32_t>, kDenseParts + 1>& pixels,
                                            size_t total) {
   size_t all = 0;
@@ -214,7 +214,7 @@ DenseSequence DenseFromImages(const std::string& folder, const std::vector<std::
   return dense;
 }
 
-/// As the file has it.
+/// The name as in the file.
 DenseSequence ReadDense(const std::string& path, const BodyModel& body, const LoadDenseOptions& options) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
@@ -270,7 +270,7 @@ bool HoldsDenseKeypoints(const std::string& path) {
   try {
     return HasDense(ReadNpz(path));
   } catch (const std::exception&) {
-    return false;  // whoever reads it next says what is wrong with it
+    return false;  // the next reader reports the error
   }
 }
 

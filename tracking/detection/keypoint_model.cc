@@ -12,7 +12,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr int64_t kUsualSide = 640, kLongestSide = 4096, kMostClasses = 2000, kMostPerPixel = 4;
+constexpr int64_t kUsualSide = 640, kLongestSide = 4096, kMaxClasses = 2000, kMaxPerPixel = 4;
 
 GraphExecutor ReadNetwork(const std::string& path) {
   const OperatorGraph graph = ReadOnnxGraph(path);
@@ -24,7 +24,7 @@ GraphExecutor ReadNetwork(const std::string& path) {
   }
   if (shape.size() != 4 || shape[0] != 1 || shape[1] != 3 || std::max(shape[2], shape[3]) > kLongestSide) {
     throw std::runtime_error(Concatenate(path, ": an input of ", GraphShapeText(stated),
-                                         ", expected one picture, 1x3xHxW, of at most ", kLongestSide, " a side"));
+                                         ", expected one image, 1x3xHxW, of at most ", kLongestSide, " a side"));
   }
   return GraphExecutor(graph, std::move(shape));
 }
@@ -33,13 +33,13 @@ bool IsOneOf(const std::vector<std::vector<int64_t>>& outputs) {
   return outputs.size() == 1 && outputs[0].size() == 3 && outputs[0][0] == 1;
 }
 
-/// Scores a pixel when the two outputs are RTMPose's, else 0.
+/// Number of scores per pixel if the two outputs are RTMPose's, else 0.
 int64_t ScoresPerPixel(const std::vector<std::vector<int64_t>>& outputs, int64_t width, int64_t height) {
   if (outputs.size() != 2 || outputs[0].size() != 3 || outputs[1].size() != 3) return 0;
   const std::vector<int64_t>&columns = outputs[0], &rows = outputs[1];
   const int64_t r = columns[2] / width;
   const bool fits = columns[0] == 1 && rows[0] == 1 && columns[1] == rows[1] && columns[2] == r * width &&
-                    rows[2] == r * height && r >= 1 && r <= kMostPerPixel;
+                    rows[2] == r * height && r >= 1 && r <= kMaxPerPixel;
   return fits ? r : 0;
 }
 
@@ -68,7 +68,7 @@ KeypointModel::KeypointModel(const std::string& path) : path_(path), network_(Re
     convention = rows % 3 == 2 ? ConventionOfCount(size_t(rows - 5) / 3) : nullptr;
     if (convention != nullptr) {
       landmarks_ = int(rows - 5) / 3;
-    } else if (rows - 4 <= kMostClasses) {
+    } else if (rows - 4 <= kMaxClasses) {
       static const KeypointConvention none{"boxes", {}};
       convention = &none;
       family_ = KeypointFamily::kYoloBoxes;
@@ -86,7 +86,7 @@ KeypointModel::KeypointModel(const std::string& path) : path_(path), network_(Re
 
 std::vector<YoloPerson> KeypointModel::FindPeople(const Image& image) const {
   BODYLOOM_CHECK(family_ != KeypointFamily::kRtmPose, path_, ": RTMPose is shown one person at a time");
-  const PictureCrop crop = LetterboxCrop(image.width, image.height, width_, height_);
+  const ImageCrop crop = LetterboxCrop(image.width, image.height, width_, height_);
   const std::vector<GraphTensor> outputs = network_.Run(LetterboxPixels(image, crop));
   std::vector<YoloPerson> people = DecodeYolo(outputs[0].floats, classes_, landmarks_, crop);
   for (YoloPerson& person : people) person.points.resize(convention_.names.size());
@@ -95,7 +95,7 @@ std::vector<YoloPerson> KeypointModel::FindPeople(const Image& image) const {
 
 std::vector<Keypoint> KeypointModel::PoseIn(const Image& image, const PersonBox& box) const {
   BODYLOOM_CHECK(family_ == KeypointFamily::kRtmPose, path_, ": not RTMPose");
-  const PictureCrop crop = TopDownCrop(box, width_, height_);
+  const ImageCrop crop = TopDownCrop(box, width_, height_);
   const std::vector<GraphTensor> outputs = network_.Run(TopDownPixels(image, crop));
   std::vector<Keypoint> points = DecodeSimcc(outputs[0].floats, outputs[1].floats, landmarks_, per_pixel_, crop);
   points.resize(convention_.names.size());
@@ -104,7 +104,7 @@ std::vector<Keypoint> KeypointModel::PoseIn(const Image& image, const PersonBox&
 
 namespace {
 
-/// The first of the largest scores; one that is not a number is none.
+/// The first maximum of the scores; NaN is ignored.
 size_t LargestAt(std::span<const float> scores) {
   size_t best = 0;
   for (size_t i = 1; i < scores.size(); ++i) {
@@ -116,7 +116,7 @@ size_t LargestAt(std::span<const float> scores) {
 }  // namespace
 
 std::vector<Keypoint> DecodeSimcc(std::span<const float> columns, std::span<const float> rows, int landmarks,
-                                  int per_pixel, const PictureCrop& crop) {
+                                  int per_pixel, const ImageCrop& crop) {
   BODYLOOM_CHECK(landmarks >= 1 && per_pixel >= 1 && crop.width >= 1 && crop.height >= 1, landmarks, " landmarks, ",
                  per_pixel, " scores a pixel");
   const size_t width = size_t(per_pixel) * size_t(crop.width), height = size_t(per_pixel) * size_t(crop.height);
@@ -137,8 +137,8 @@ std::vector<Keypoint> DecodeSimcc(std::span<const float> columns, std::span<cons
 
 namespace {
 
-constexpr double kLeastScore = 0.25, kSameBoxOverlap = 0.7;
-constexpr size_t kMostPeople = 300;
+constexpr double kMinScore = 0.25, kSameBoxOverlap = 0.7;
+constexpr size_t kMaxPeople = 300;
 
 double Overlap(const PersonBox& a, const PersonBox& b) {
   const auto area = [](const PersonBox& box) { return (box.x1 - box.x0) * (box.y1 - box.y0); };
@@ -148,7 +148,7 @@ double Overlap(const PersonBox& a, const PersonBox& b) {
   return width * height / (area(a) + area(b) - width * height);
 }
 
-/// The network's numbers, rows × anchors.
+/// The network's output, rows × anchors.
 class Numbers {
  public:
   Numbers(std::span<const float> values, size_t rows) : values_(values), anchors_(values.size() / rows) {}
@@ -162,14 +162,14 @@ class Numbers {
 
 bool IsPerson(const Numbers& numbers, size_t anchor, int classes) {
   const double score = numbers.At(4, anchor);
-  if (!(score >= kLeastScore)) return false;  // not a number compares false
+  if (!(score >= kMinScore)) return false;  // not a number compares false
   for (int c = 1; c < classes; ++c) {
     if (numbers.At(4 + size_t(c), anchor) > score) return false;
   }
   return true;
 }
 
-PersonBox BoxOf(const Numbers& numbers, size_t anchor, const PictureCrop& crop) {
+PersonBox BoxOf(const Numbers& numbers, size_t anchor, const ImageCrop& crop) {
   const Eigen::Array2d middle(numbers.At(0, anchor), numbers.At(1, anchor));
   const Eigen::Array2d half = Eigen::Array2d(numbers.At(2, anchor), numbers.At(3, anchor)) / 2;
   const Eigen::Array2d low = crop.ImageFromCrop(middle - half), high = crop.ImageFromCrop(middle + half);
@@ -181,7 +181,7 @@ bool IsUsable(const PersonBox& box) {
          box.x1 > box.x0 && box.y1 > box.y0;
 }
 
-Keypoint PointOf(const Numbers& numbers, size_t row, size_t anchor, const PictureCrop& crop) {
+Keypoint PointOf(const Numbers& numbers, size_t row, size_t anchor, const ImageCrop& crop) {
   const Eigen::Array2d place = crop.ImageFromCrop({numbers.At(row, anchor), numbers.At(row + 1, anchor)});
   const double visibility = numbers.At(row + 2, anchor);
   const Keypoint point = {float(place.x()), float(place.y()), float(std::clamp(visibility, 0.0, 1.0))};
@@ -191,7 +191,7 @@ Keypoint PointOf(const Numbers& numbers, size_t row, size_t anchor, const Pictur
 
 }  // namespace
 
-std::vector<YoloPerson> DecodeYolo(std::span<const float> output, int classes, int landmarks, const PictureCrop& crop) {
+std::vector<YoloPerson> DecodeYolo(std::span<const float> output, int classes, int landmarks, const ImageCrop& crop) {
   BODYLOOM_CHECK(classes >= 1 && landmarks >= 0, classes, " classes and ", landmarks, " landmarks");
   const size_t rows = 4 + size_t(classes) + 3 * size_t(landmarks);
   BODYLOOM_CHECK(output.size() % rows == 0, output.size(), " numbers, expected ", rows, " for each anchor");
@@ -206,7 +206,7 @@ std::vector<YoloPerson> DecodeYolo(std::span<const float> output, int classes, i
                    [](const auto& a, const auto& b) { return a.first.score > b.first.score; });
   std::vector<YoloPerson> people;
   for (const auto& [box, anchor] : candidates) {
-    if (people.size() == kMostPeople) break;
+    if (people.size() == kMaxPeople) break;
     const auto is_same = [&b = box](const YoloPerson& other) { return Overlap(b, other.box) > kSameBoxOverlap; };
     if (std::any_of(people.begin(), people.end(), is_same)) continue;
     YoloPerson& person = people.emplace_back();

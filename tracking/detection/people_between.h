@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// People in frames that were not detected, between two that were.
+/// Interpolates people in the frames between two frames with detections.
 #pragma once
 
 #include <vector>
@@ -8,17 +8,17 @@
 
 namespace bodyloom {
 
-/// Fills the frames t with detected[t] = 0. Whoever LinkPeople() finds in both detected frames around t, next to each
-/// other among the detected ones, gets landmarks there that are linear in time:
+/// Fills the frames t with detected[t] = 0. Each person whom LinkPeople() finds in both detected frames nearest to t,
+/// before and after it, gets landmarks that are linear in time:
 ///   p(t) = (1 − a) p(t₀) + a p(t₁),   a = (time − time₀) / (time₁ − time₀),
 /// and the same for confidences; a landmark whose confidence is 0 in either frame has 0. Frames before the first and
 /// after the last detected one stay as they are. Throws std::invalid_argument when `detected` has another length than
 /// the clip.
 void FillBetween(const std::vector<char>& detected, PeopleSequence* people);
 
-/// The farthest that anybody of frame `a` has gone in frame `b`, as a share of the box around the person's landmarks
-/// (its longer side, in `a`): the largest mean over the landmarks of one person, each person with the nearest of the
-/// other frame. Infinite when the frames hold different numbers of people, or nobody.
+/// Largest displacement of a person from frame `a` to frame `b`, relative to the longer side of the box around the
+/// person's landmarks in `a`: the maximum over people of the mean over landmarks, each person matched to the nearest of
+/// the other frame. Infinite when the frames hold different numbers of people, or nobody.
 double LargestStep(const std::vector<DetectedPerson>& a, const std::vector<DetectedPerson>& b);
 
 }  // namespace bodyloom

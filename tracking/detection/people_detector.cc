@@ -62,8 +62,8 @@ class PeopleDetector::Follower {
     return may_be_more && since_search_ >= options_.search_interval;
   }
 
-  /// Adds the people of a picture who are not followed yet. Smaller squares are searched after the whole picture, and
-  /// not at all when only so many people are wanted and they are there already.
+  /// Adds the people of an image who are not followed yet. Smaller squares are searched after the whole image, and only
+  /// while fewer than max_people are followed.
   void Search(const Image& image) {
     const Stopwatch watch;
     for (int level = 1; level <= options_.tile_levels && !IsFull(); ++level) {
@@ -133,12 +133,12 @@ class PeopleDetector::Follower {
   }
 
   [[nodiscard]] bool IsPresent(const DetectedPose& pose) const {
-    // A probability that is not a number compares false.
+    // NaN compares false.
     return pose.presence >= options_.min_presence && pose.hips.allFinite() && pose.rim.allFinite();
   }
 
-  /// body(i, a detector that no other thread uses meanwhile) for i in 0..count−1. Networks run on one thread each:
-  /// several side by side use the processor better than one on several threads.
+  /// Calls body(i, detector) for i in 0..count−1, each detector used by one thread at a time. Networks run on one
+  /// thread each: several in parallel use the processor better than one on several threads.
   template <typename Body>
   void InParallel(int count, const Body& body) {
     const int workers = std::min(count, int(detectors_.size()));

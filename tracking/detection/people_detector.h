@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everybody in the frames of a clip, by BlazePose: people are looked for now and then, and followed from frame to
-/// frame in between.
+/// Detects everybody in the frames of a clip with BlazePose: people are searched for at intervals and followed from
+/// frame to frame in between.
 ///
-/// Frames come in groups of up to kFramesAtOnce. All frames of a group are looked at in the regions that the frame
-/// before the group left (RegionAroundBody of its two region points), so that they can run side by side; results do not
-/// depend on the number of threads. New people are looked for in a group's first frame: when nobody is followed, and
-/// every `search_interval` frames unless max_people are followed already. A person is lost when the network says in
-/// every frame of a group that nobody is there. Two regions that show the same landmarks (PoseDistance below 0.1) are
-/// one person; the one followed longer stays.
+/// Frames come in groups of up to kFramesAtOnce. All frames of a group use the regions from the frame before the group
+/// (RegionAroundBody of its two region points), so that they can run in parallel; results do not depend on the number
+/// of threads. New people are searched for in a group's first frame: when nobody is followed, and every
+/// `search_interval` frames unless max_people are followed already. A person is lost when the network finds nobody in
+/// the region in every frame of a group. Two regions that show the same landmarks (PoseDistance below 0.1) are one
+/// person; the one followed longer is kept.
 #pragma once
 
 #include <memory>
@@ -22,17 +22,17 @@ namespace bodyloom {
 
 struct PeopleDetectorOptions {
   PoseNetworkSize network = PoseNetworkSize::kHeavy;
-  bool masks = false;         ///< poses bring masks
-  int max_people = 0;         ///< the surest stay; 0: everybody
+  bool masks = false;         ///< poses include masks
+  int max_people = 0;         ///< those of highest score are kept; 0: everybody
   int search_interval = 30;   ///< frames
   int tile_levels = 2;        ///< finest squares in which people are searched: 1/tile_levels of the longer side
-  double min_presence = 0.5;  ///< below, nobody is in a region
+  double min_presence = 0.5;  ///< below it a region counts as empty
   int num_threads = 2;
   [[nodiscard]] bool IsValid() const;
 };
 
 struct PeopleDetectorSummary {
-  int frames = 0, searches = 0, regions = 0;        ///< regions looked at
+  int frames = 0, searches = 0, regions = 0;        ///< regions evaluated
   double search_seconds = 0, landmark_seconds = 0;  ///< wall time
 };
 

@@ -35,7 +35,7 @@ double IntersectionOverUnion(const PersonDetection& a, const PersonDetection& b)
   return either > 0 ? both / either : 0;
 }
 
-/// `candidates`, best first, with those that overlap merged.
+/// The candidates, best first, with overlapping ones merged.
 std::vector<PersonDetection> Merged(std::vector<PersonDetection> candidates) {
   std::vector<PersonDetection> result;
   while (!candidates.empty()) {
@@ -44,7 +44,7 @@ std::vector<PersonDetection> Merged(std::vector<PersonDetection> candidates) {
     double sum = 0;
     std::vector<PersonDetection> rest;
     for (const PersonDetection& other : candidates) {
-      // The best one belongs to itself even when its box has no area.
+      // The best one belongs to its own group even when its box has no area.
       if (&other != candidates.data() && IntersectionOverUnion(best, other) <= kSamePersonOverlap) {
         rest.push_back(other);
         continue;
@@ -80,7 +80,7 @@ std::vector<PersonDetection> DecodePersonDetections(std::span<const float> boxes
         const double score = 1 / (1 + std::exp(-std::clamp<double>(logits[i], -kMaxLogit, kMaxLogit)));
         const std::span<const float> numbers = boxes.subspan(i * kNumbers, kNumbers);
         const bool finite = std::all_of(numbers.begin(), numbers.end(), [](float v) { return std::isfinite(v); });
-        // A logit that is not a number compares false.
+        // NaN compares false.
         if (score >= min_score && finite && numbers[2] >= 0 && numbers[3] >= 0) {
           candidates.push_back(Decoded(numbers, anchor, score));
         }

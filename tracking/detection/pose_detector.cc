@@ -13,7 +13,7 @@
 namespace bodyloom {
 namespace {
 
-/// Places among the landmark network's outputs.
+/// Indices of the landmark network's outputs.
 enum LandmarkOutput { kLandmarks, kPresence, kMask, kHeatmaps, kWorld };
 
 struct NetworkOfSize {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// BlazePose on one picture: the person detector and the landmark network of MediaPipe Pose, from their .tflite files.
+/// Runs BlazePose on one image: the person detector and the landmark network of MediaPipe Pose, from their .tflite
+/// files.
 ///
 /// Networks run on the processor. An object serves one thread at a time; copies share the kernels, so that one for each
 /// thread costs little.
@@ -25,13 +26,13 @@ std::string ToText(PoseNetworkSize size);
 class PoseModels;
 
 /// Reads the person detector and one landmark network from a folder, or where they are installed when it is empty
-/// (model_files.h). Throws std::runtime_error naming a
-/// file that is missing or no such network.
+/// (model_files.h). Throws std::runtime_error naming a file that is missing or not such a network.
 std::shared_ptr<const PoseModels> ReadPoseModels(const std::string& folder, PoseNetworkSize size);
 
 class PoseDetector {
  public:
-  /// with_mask: poses bring a mask, which takes `heavy` a tenth longer and `full` half (docs/lab/pose_detector.md).
+  /// with_mask: poses include a mask, at a tenth more time for `heavy` and half more for `full`
+  /// (docs/lab/pose_detector.md).
   PoseDetector(const std::shared_ptr<const PoseModels>& models, bool with_mask);
   PoseDetector(const PoseDetector& other);
   PoseDetector& operator=(const PoseDetector&) = delete;
@@ -39,12 +40,12 @@ class PoseDetector {
   PoseDetector(PoseDetector&&) noexcept;
   PoseDetector& operator=(PoseDetector&&) noexcept;
 
-  /// Regions of the people that the person detector sees in an upright square of the picture, surest first; people
-  /// shorter than about 0.28 of the square's side are not found.
+  /// Regions of the people that the person detector finds in an upright square of the image, highest score first;
+  /// people shorter than about 0.28 of the square's side are not found.
   [[nodiscard]] std::vector<PoseRegion> FindPeople(const Image& image, const PoseRegion& square,
                                                    double min_score = 0.5);
 
-  /// The pose of whoever is in a region. Nobody may be: see DetectedPose::presence.
+  /// The pose of the person in a region, which may be empty: DetectedPose::presence.
   [[nodiscard]] DetectedPose PoseIn(const Image& image, const PoseRegion& region);
 
  private:

@@ -24,7 +24,7 @@ struct Refined {
 /// Landmark `k` at `fraction` of the crop, moved to the centre of its heatmap's window.
 Refined RefineByHeatmap(std::span<const float> heatmaps, int k, const Eigen::Vector2d& fraction) {
   constexpr int n = kPoseHeatmapSize;
-  // A place that is not a number compares false.
+  // NaN compares false.
   if (!(fraction.x() > -1 && fraction.x() < 2 && fraction.y() > -1 && fraction.y() < 2)) return {fraction, 0};
   const int column = int(std::trunc(n * fraction.x())), row = int(std::trunc(n * fraction.y()));
   if (column < 0 || row < 0 || column >= n || row >= n) return {fraction, 0};
@@ -42,7 +42,7 @@ Refined RefineByHeatmap(std::span<const float> heatmaps, int k, const Eigen::Vec
   return {weighted / sum / n, peak};
 }
 
-/// The network's mask, as probabilities, between its pixels: bilinear, 0 outside. Pixel (column, row) lies at fraction
+/// The network's mask as probabilities, interpolated bilinearly, 0 outside. Pixel (column, row) lies at fraction
 /// column/256, row/256 of the crop.
 class MaskSampler {
  public:
@@ -53,7 +53,7 @@ class MaskSampler {
     }
   }
 
-  /// At a column and a row of the mask.
+  /// Probability at a column and a row of the mask.
   [[nodiscard]] float At(float x, float y) const {
     x = std::clamp(x, -1.0F, float(kSize)) + 1;
     y = std::clamp(y, -1.0F, float(kSize)) + 1;
@@ -65,7 +65,7 @@ class MaskSampler {
   }
 
  private:
-  /// One pixel of zeros before the mask, two behind: where all that is outside is clamped to.
+  /// One pixel of zeros before the mask, two behind, to which positions outside are clamped.
   static constexpr int kSize = kPoseNetworkSize, kSide = kSize + 3;
   std::vector<float> values_;
 };

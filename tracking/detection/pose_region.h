@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Region of interest of a person: the turned square of an image that a pose network looks at, and the crop taken from
-/// it.
+/// Region of interest of a person: the rotated square of an image that is the input of a pose network, and its crop.
 ///
 /// A point at fraction f of the crop (x right, y down, (0, 0) its corner, (1, 1) the opposite one) lies in the image at
 ///   centre + R(rotation) · ((f − ½) · side),   R(θ) = [[cos θ, −sin θ], [sin θ, cos θ]],
@@ -22,18 +21,18 @@ struct PoseRegion {
 
   [[nodiscard]] Eigen::Vector2d ImageFromFraction(const Eigen::Vector2d& fraction) const;
   [[nodiscard]] Eigen::Vector2d FractionFromImage(const Eigen::Vector2d& pixel) const;
-  /// Whether centre and side are finite and the side is at least a pixel.
+  /// True if centre and side are finite and the side is at least a pixel.
   [[nodiscard]] bool IsValid() const;
 };
 
-/// The region around a person whose hips' middle is `hips` and whose body's circle about it passes through `rim` (both
-/// pixels): centre at the hips, side 2.5 · |rim − hips|, turned so that hips → rim is up in the crop.
+/// The region around a person from the middle of the hips and a point `rim` on the circle about it that holds the body
+/// (both pixels): centre at the hips, side 2.5 · |rim − hips|, rotated so that hips → rim is up in the crop.
 PoseRegion RegionAroundBody(const Eigen::Vector2d& hips, const Eigen::Vector2d& rim);
 
 /// The smallest upright square around an image of that size, with the same centre (width/2, height/2).
 PoseRegion WholeImageRegion(int width, int height);
 
-/// Upright squares with `level` columns or rows along the longer side, each half over the next, that together cover the
+/// Upright squares with side 1/`level` of the longer side, each overlapping the next by half, that together cover the
 /// image; level 1 is the whole image's square. Empty for a level below 1.
 std::vector<PoseRegion> TileRegions(int width, int height, int level);
 

@@ -13,8 +13,8 @@ namespace bodyloom {
 namespace {
 
 constexpr float kNoise = 3, kEdge = 1.0F / 3, kSpreadOfMad = 1.48F;
-constexpr uint8_t kRestless = 8;  ///< MAD of a pixel that does not stand still
-constexpr double kMostRestless = 0.1, kLeastKnown = 0.5;
+constexpr uint8_t kRestless = 8;  ///< a larger MAD means that the pixel is not static
+constexpr double kMaxRestless = 0.1, kMinKnown = 0.5;
 
 uint8_t Median(std::vector<uint8_t>* values) {
   const auto middle = values->begin() + std::ptrdiff_t(values->size() / 2);
@@ -22,14 +22,14 @@ uint8_t Median(std::vector<uint8_t>* values) {
   return *middle;
 }
 
-/// A pixel's colour where nobody covers it.
+/// Colours of a pixel in the images in which nobody covers it.
 class PixelHistory {
  public:
-  void Gather(std::span<const CoveredPicture> pictures, size_t pixel) {
+  void Gather(std::span<const CoveredImage> images, size_t pixel) {
     for (std::vector<uint8_t>& channel : channels_) channel.clear();
-    for (const CoveredPicture& seen : pictures) {
+    for (const CoveredImage& seen : images) {
       if (seen.covered[pixel] != 0) continue;
-      for (size_t c = 0; c < 3; ++c) channels_[c].push_back(seen.picture.bgr[3 * pixel + c]);
+      for (size_t c = 0; c < 3; ++c) channels_[c].push_back(seen.image.bgr[3 * pixel + c]);
     }
   }
   [[nodiscard]] size_t size() const { return channels_[0].size(); }
@@ -56,38 +56,38 @@ float StepTo(const Image& image, int x, int y, int dx, int dy) {
   return step;
 }
 
-void CheckPictures(std::span<const CoveredPicture> pictures, const StillBackgroundOptions& options) {
-  BODYLOOM_CHECK(options.fewest >= 1, "still background: fewest pictures ", options.fewest, ", expected 1 or more");
-  for (const CoveredPicture& seen : pictures) {
-    const Image &picture = seen.picture, &first = pictures.front().picture;
-    BODYLOOM_CHECK(!picture.empty() && picture.width == first.width && picture.height == first.height &&
-                       seen.covered.size() == size_t(picture.width) * size_t(picture.height),
-                   "still background: a picture of ", picture.width, "x", picture.height, " with ", seen.covered.size(),
+void CheckImages(std::span<const CoveredImage> images, const StillBackgroundOptions& options) {
+  BODYLOOM_CHECK(options.fewest >= 1, "still background: fewest images ", options.fewest, ", expected 1 or more");
+  for (const CoveredImage& seen : images) {
+    const Image &image = seen.image, &first = images.front().image;
+    BODYLOOM_CHECK(!image.empty() && image.width == first.width && image.height == first.height &&
+                       seen.covered.size() == size_t(image.width) * size_t(image.height),
+                   "still background: an image of ", image.width, "x", image.height, " with ", seen.covered.size(),
                    " pixels of people, expected ", first.width, "x", first.height);
   }
 }
 
-/// Whether so little is restless that the camera stands still. `mad`: −1 where nothing is known.
+/// True if the MADs of enough pixels are small, so that the camera is static. `mad`: −1 for pixels not known.
 bool StandsStill(const std::vector<int16_t>& mad) {
   const auto known = double(std::count_if(mad.begin(), mad.end(), [](int m) { return m >= 0; }));
   const auto restless = double(std::count_if(mad.begin(), mad.end(), [](int m) { return m > kRestless; }));
-  return known >= kLeastKnown * double(mad.size()) && restless <= kMostRestless * known;
+  return known >= kMinKnown * double(mad.size()) && restless <= kMaxRestless * known;
 }
 
 }  // namespace
 
-std::optional<StillBackground> FindStillBackground(std::span<const CoveredPicture> pictures,
+std::optional<StillBackground> FindStillBackground(std::span<const CoveredImage> images,
                                                    const StillBackgroundOptions& options) {
-  CheckPictures(pictures, options);
-  if (int(pictures.size()) < options.fewest) return std::nullopt;
-  const int width = pictures.front().picture.width, height = pictures.front().picture.height;
+  CheckImages(images, options);
+  if (int(images.size()) < options.fewest) return std::nullopt;
+  const int width = images.front().image.width, height = images.front().image.height;
   StillBackground background;
   background.colours = Image(width, height);
   std::vector<int16_t> mad(size_t(width) * size_t(height), -1);
   ParallelFor(height, options.num_threads, [&](int y) {
     PixelHistory history;
     for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i) {
-      history.Gather(pictures, i);
+      history.Gather(images, i);
       if (int(history.size()) >= options.fewest) mad[i] = history.Middle(&background.colours.bgr[3 * i]);
     }
   });

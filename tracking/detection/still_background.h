@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What stands behind the people of a clip whose camera stands still: a colour of every pixel, and how much it varies.
+/// Estimates the background of a clip from a static camera: a colour and a standard deviation for every pixel.
 ///
-/// Of the pictures in which nobody covers a pixel, each channel's median; its spread σ is 1.48 times the median of the
-/// largest channel's distance from it, joined with 3 levels (a camera's noise, compression) and with a third of the
-/// step to the next pixels (edges tremble by a part of a pixel):
+/// The colour is the median of each channel over the images in which nobody covers the pixel. Its σ is 1.48 times the
+/// median absolute deviation (MAD, the largest of the channels), joined with 3 levels (camera noise, compression) and
+/// with a third of the step to the next pixels (edges move by a fraction of a pixel):
 ///   σ² = (1.48 MAD)² + 3² + (|∇B|/3)²
-/// A pixel that fewer than `fewest` pictures show is not known. The camera counts as still when at least half of the
+/// A pixel that fewer than `fewest` images show is not known. The camera counts as static when at least half of the
 /// pixels are known and at most a tenth of them have a MAD above 8 levels.
 #pragma once
 
@@ -19,13 +19,13 @@
 namespace bodyloom {
 
 struct StillBackground {
-  Image colours;             ///< black where it is not known
+  Image colours;             ///< black where not known
   std::vector<float> sigma;  ///< levels of 255, a pixel; 0: not known
 };
 
-/// A picture of the clip, and where people may be in it.
-struct CoveredPicture {
-  Image picture;
+/// An image of the clip, and a mask of the people in it.
+struct CoveredImage {
+  Image image;
   std::vector<uint8_t> covered;  ///< width·height; not 0: somebody may be there
 };
 
@@ -34,9 +34,9 @@ struct StillBackgroundOptions {
   int num_threads = 1;
 };
 
-/// None when the camera moves, or people cover half of the picture all the time. Some thirty pictures from all over the
-/// clip will do. Throws std::invalid_argument for pictures of different sizes.
-std::optional<StillBackground> FindStillBackground(std::span<const CoveredPicture> pictures,
+/// None when the camera moves, or people always cover half of the image. About thirty images spread over the clip are
+/// enough. Throws std::invalid_argument for images of different sizes.
+std::optional<StillBackground> FindStillBackground(std::span<const CoveredImage> images,
                                                    const StillBackgroundOptions& options = {});
 
 }  // namespace bodyloom

@@ -37,7 +37,7 @@ double WeightedMedian(std::vector<std::pair<double, double>> value_weight) {
   return 0;
 }
 
-/// The part of d that the camera sees from afar: without what goes along the ray to where the foot is.
+/// The component of d across the view: perpendicular to the ray to the foot.
 Vector3d AcrossView(const Vector3d& d, const FootPlace& place) {
   const Vector3d ray = (place.ankle_m - place.camera_m).normalized();
   return d - ray.dot(d) * ray;
@@ -70,7 +70,7 @@ double Stand(std::vector<Stance> stances, const GroundPlaneOptions& options, Gro
   return on_ground;
 }
 
-/// What Stand() found is the ground, or `why` not.
+/// Marks the plane of Stand() as found if `accepted`; otherwise sets the reason `why` not.
 GroundPlane Accepted(GroundPlane ground, bool accepted, const std::string& why) {
   ground.found = accepted;
   ground.why = accepted ? std::to_string(ground.stances.size()) + " stances on it" : why;
@@ -193,7 +193,7 @@ GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& fee
       const double information = 1 / (options.height_m * options.height_m + along * along);
       const Vector3d row(e1.dot(p), e2.dot(p), -1);
       const double residual = up.dot(p) + row.dot(x);
-      // A second of standing counts twice what half a second does, and more than that is one place all the same.
+      // The weight is proportional to the seconds of standing, up to one second: longer stances are still one position.
       const double weight =
           std::min(1.0, stance.seconds) * information * GemanMcClure(residual * residual * information, 3).weight;
       H += weight * row * row.transpose();
@@ -232,9 +232,10 @@ constexpr float kSeenConfidence = 0.3F;
 
 }  // namespace
 
-std::vector<std::array<FootPlace, 2>> SeenFeet(const SequenceProblem& problem, const std::vector<int>& frames,
-                                               const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks,
-                                               const KeypointSequence& keypoints) {
+std::vector<std::array<FootPlace, 2>> ObservedFeet(const SequenceProblem& problem, const std::vector<int>& frames,
+                                                   const std::vector<LiftedFrame>& lifted,
+                                                   const LiftedLandmarks& landmarks,
+                                                   const KeypointSequence& keypoints) {
   std::array<int, 2> column{-1, -1};
   for (int foot = 0; foot < 2; ++foot) {
     const std::string& name = LifterPointNames()[kLifterLeftAnkle + foot];

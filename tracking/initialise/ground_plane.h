@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The ground plane, and which way is up, from one shot of one camera. Where it moves, everything is in the scene
-/// (geometry/scene/camera_path.h), and each foot says from where it was seen.
+/// Estimates the vertical and the ground plane from one shot of one camera. For a moving camera everything is in the
+/// scene (geometry/scene/camera_path.h), and each foot has the camera position from which it was seen.
 ///
-/// The lifter predicts where up is in every frame; over a shot these directions are one measurement. A foot stands
-/// while the lifter calls it so and its ankle keeps its place across the view. Ankles of stances lie in one plane
-/// across up if there is a ground: it is fitted to them with the lifter's up as prior, robustly, allowing for what a
-/// single camera does not know: the depth of each stance. Somebody who jumps all the time, hangs, climbs stairs or is
-/// seen from the knees up has no ground, which is reported.
+/// The lifter predicts the vertical in every frame; over a shot these directions are one measurement. A foot stands
+/// while the lifter predicts contact and the ankle does not move across the view. If there is a ground, the ankles of
+/// stances lie in one plane perpendicular to the vertical: it is fitted robustly, with the lifter's vertical as prior
+/// and the unknown depth of each stance as an error along its ray. For somebody who jumps all the time, hangs, climbs
+/// stairs or is seen from the knees up no ground is found, which is reported.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,8 +29,8 @@ struct UpEstimate {
   double spread_deg = 0;                           ///< median angle of the frames' own up to it
 };
 
-/// Mean direction of the frames' ups, weighted by 1/σ² and robustly (10°). Not found when no frame is `seen` or the
-/// spread exceeds 20°: then the camera turns, or the lifter does not know.
+/// Robust mean (10°) of the frames' up directions, weighted by 1/σ². Not found when no frame is `seen` or the spread
+/// exceeds 20°: then the camera turns, or the lifter is uncertain.
 UpEstimate EstimateUp(std::span<const LiftedFrame> frames);
 
 inline constexpr double kAnkleHeight = 0.08;  ///< metres above the floor, of the ankle of a foot that stands flat
@@ -40,16 +40,16 @@ struct FootPlace {
   Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();   ///< camera frame, or the scene of a camera that moves
   double contact = 0;                                  ///< probability that the foot stands
   bool seen = false;                                   ///< its ankle was detected
-  Eigen::Vector3d camera_m = Eigen::Vector3d::Zero();  ///< where the camera was
+  Eigen::Vector3d camera_m = Eigen::Vector3d::Zero();  ///< position of the camera
 };
 
-/// A foot that stays where it is over the frames [begin, end).
+/// A foot that does not move over the frames [begin, end).
 struct Stance {
   int foot = 0, begin = 0, end = 0;  ///< foot 0: left
   double seconds = 0;
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  ///< of the ankle: mean over its frames; on the ground: held there
   Eigen::Vector3d camera_m = Eigen::Vector3d::Zero();  ///< of the camera: mean over its frames
-  /// The direction in which it was seen, unit.
+  /// Viewing direction, unit.
   [[nodiscard]] Eigen::Vector3d Ray() const { return (place_m - camera_m).normalized(); }
 };
 
@@ -69,7 +69,7 @@ struct GroundPlaneOptions {
 
 struct GroundPlane {
   bool found = false;
-  std::string why;                                     ///< what was found, or why nothing
+  std::string why;                                     ///< the evidence, or the reason why none was found
   Eigen::Vector3d normal = Eigen::Vector3d(0, -1, 0);  ///< up, camera axes, unit
   double offset_m = 0;                                 ///< normal · ankle of standing feet
   double spread_m = 0;                                 ///< robust σ of the stances' heights, weighted by time
@@ -81,32 +81,31 @@ struct GroundPlane {
   std::vector<Stance> stances;  ///< on the plane; their places are moved towards it as the σ above weigh them
 };
 
-/// Where feet stand, on whatever. `feet` and `timestamps` as below.
+/// Finds the stances of both feet, on any support. `feet` and `timestamps` as below.
 std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                                 const GroundPlaneOptions& options);
 
-/// Median speed across the view of ankles that are seen and called standing in two frames that follow each other, m/s;
-/// NaN when there are fewer than ten such pairs.
+/// Median speed across the view of ankles that are seen and predicted to stand in two consecutive frames, m/s; NaN with
+/// fewer than ten such pairs.
 double StandingSpeed(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                      const GroundPlaneOptions& options);
 
-/// `feet` and `timestamps` (seconds, increasing) have the same number of frames. Throws std::invalid_argument
-/// otherwise.
+/// Fits the ground plane to the stances. `feet` and `timestamps` (seconds, increasing) have the same number of frames.
+/// Throws std::invalid_argument otherwise.
 GroundPlane EstimateGroundPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                                 const Eigen::Vector3d& up, const GroundPlaneOptions& options);
 
-/// The same for a plane that is known: {x : normal · x = offset_m} is where ankles of standing feet are. Found when
-/// feet stand on it for min_total_s; places are moved onto it.
+/// The same for a known plane: ankles of standing feet lie in {x : normal · x = offset_m}. Found when feet stand on it
+/// for min_total_s; the stances' positions are moved onto it.
 GroundPlane StandOnPlane(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                          const Eigen::Vector3d& normal, double offset_m, const GroundPlaneOptions& options);
 
-// Where a person's ankles are in the frames of a clip, and what the lifter says of the feet.
-
-/// Of each frame of `problem`, which are `frames` of the clip that `lifted` and `keypoints` hold all frames of: both
-/// ankles where the problem's states have them (for weak perspective as far away as FrameLayout::BodyPlace), and where
-/// the camera was. A foot is seen where the detector is sure of its ankle.
-std::vector<std::array<FootPlace, 2>> SeenFeet(const SequenceProblem& problem, const std::vector<int>& frames,
-                                               const std::vector<LiftedFrame>& lifted, const LiftedLandmarks& landmarks,
-                                               const KeypointSequence& keypoints);
+/// The feet in each frame of `problem`: ankle positions by the problem's states (for weak perspective at the distance
+/// of FrameLayout::BodyPlace), the lifter's contacts, and the camera's position. `frames` are the indices of the
+/// problem's frames in the clip, of which `lifted` and `keypoints` hold all frames. A foot is seen if the detector's
+/// confidence in its ankle suffices.
+std::vector<std::array<FootPlace, 2>> ObservedFeet(const SequenceProblem& problem, const std::vector<int>& frames,
+                                                   const std::vector<LiftedFrame>& lifted,
+                                                   const LiftedLandmarks& landmarks, const KeypointSequence& keypoints);
 
 }  // namespace bodyloom

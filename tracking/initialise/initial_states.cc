@@ -50,9 +50,9 @@ std::vector<FrameState> FillFrames(const std::vector<int>& frames, const std::ve
   return states;
 }
 
-/// Hypotheses of every shot by itself: what lies beyond a cut does not bear on depth, heading or limbs. A shot that
-/// nowhere shows both shoulders and both hips well is taken with what it has: faint joints first, then a hidden
-/// shoulder or hip where its partner is.
+/// Hypotheses for every shot separately, since frames beyond a cut do not constrain depth, heading or limbs. For a shot
+/// that never shows both shoulders and both hips well, joints of low confidence are used first, then an occluded
+/// shoulder or hip is placed at its partner.
 JointHypothesesResult FindHypothesesOfShots(const KeypointSequence& keypoints, const std::vector<char>& cut_before,
                                             const Camera& camera, const MatrixX3d& rest_points, const PosePrior* prior,
                                             const JointHypothesesOptions& options) {
@@ -90,8 +90,8 @@ MatrixX3d RestLandmarks(const BodyModel& model, const VectorXd& betas = VectorXd
   return PoseLandmarks(model, betas, rest, CocoNames());
 }
 
-/// Replaces translations by weak-perspective cameras that fit what the frame shows; frames that show too little take
-/// their neighbour's.
+/// Replaces translations by weak-perspective cameras fitted to the frame's observations; frames with too few take their
+/// neighbour's.
 void ToWeakPerspective(const KeypointSequence& keypoints, const FrameLayout& layout, std::vector<FrameState>* states) {
   Vector3d last(0, 0, 0);
   bool known = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A starting pose for every frame: from the user's initialiser, or from nothing.
+/// Finds a starting pose for every frame, from the user's initialiser or from the observations alone.
 #pragma once
 
 #include <string>
@@ -20,18 +20,19 @@ struct InitialStates {
 
 struct LiftedStart;
 
-/// The initialiser's poses when given, frames that it lacks between its others as below; else the lifter's, when there
-/// is one that can read the observations; else joint hypotheses turned into poses by inverse kinematics and
-/// interpolated on SO(3) to every frame. `keypoints`: JointsToStartFrom(); null only with an initialiser. `lifted`,
-/// when given, receives what the lifter predicted (its frames are empty when it was not run or saw nothing); with an
-/// initialiser the lifter runs for the vertical and the ground alone, when they are wanted.
+/// The initialiser's poses if given, with missing frames interpolated as below; else the lifter's, if there is one that
+/// can use the observations; else joint hypotheses, converted to poses by inverse kinematics and interpolated on SO(3)
+/// to every frame. `keypoints`: JointsToStartFrom(); null only with an initialiser. `lifted`, if given, receives the
+/// lifter's predictions (its frames are empty if it did not run or no landmark was seen); with an initialiser the
+/// lifter runs only for the vertical and the ground, when they are requested.
 InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointSequence* keypoints,
                                 const FrameLayout& layout, const TrackSequenceOptions& options,
                                 LiftedStart* lifted = nullptr);
 
-/// Why the lifter does not run, or empty when it does.
+/// The reason why the lifter does not run; empty if it does.
 std::string WhyNotLifted(const TrackSequenceInput& input, const TrackSequenceOptions& options);
-/// Why it does not give the start and stay as L_d, or empty when it does: it does not run, or there is an initialiser.
+/// The reason why the lifter gives neither the start nor the term L_d (it does not run, or there is an initialiser);
+/// empty if it gives both.
 std::string WhyNoLifter(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 
 /// COCO-17 keypoints estimated from dense ones: each landmark is the mean pixel of the surface points near it in the

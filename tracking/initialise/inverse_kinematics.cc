@@ -150,7 +150,7 @@ Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& c
   for (int b = 0; b < num_betas; ++b) A.col(b) = log_lengths(Eigen::VectorXd::Unit(num_betas, b)) - mean;
   constexpr double kSigma = 0.03;
   const Eigen::MatrixXd H = A.transpose() * A / (kSigma * kSigma) + Eigen::MatrixXd::Identity(num_betas, num_betas);
-  // No two people differ by more; beyond it the joints are not a person's.
+  // People do not differ by more; a larger ratio means wrong detections.
   constexpr double kLimit = 0.35;
   const Eigen::VectorXd difference = (log_seen - mean).cwiseMax(-kLimit).cwiseMin(kLimit);
   return H.ldlt().solve(A.transpose() * difference / (kSigma * kSigma));

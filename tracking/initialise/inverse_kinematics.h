@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Analytic inverse kinematics: 3D joints in CocoNames() order → joint rotations of a body with SMPL's tree.
 ///
-/// The trunk is a rigid plate. A limb's upper joint takes the swing onto the bone's direction and the twist that puts
-/// the hinge (elbow, knee) perpendicular to the plane of both bones; for a nearly straight limb, whose plane is not
-/// determined, the twist of the shortest swing takes over smoothly. The hinge takes what is left.
+/// The trunk is rigid. A limb's upper joint takes the swing onto the bone's direction and the twist that puts the hinge
+/// (elbow, knee) perpendicular to the plane of both bones; for a nearly straight limb, whose plane is not determined,
+/// the twist is blended towards that of the shortest swing. The hinge takes the remaining rotation.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,10 +23,8 @@ namespace bodyloom {
 BodyPose PoseFromJoints(const BodyModel& model, const MatrixX3d& rest_joints, const MatrixX3d& rest_points,
                         const MatrixX3d& points, const Eigen::Matrix3d& torso_rotation);
 
-// A shape before anything is fitted, from how long the bones look.
-
-/// Shape components whose bone lengths have the ratios that the clip shows: a bone's largest projections over the clip
-/// (90th percentile, relative to the body's apparent size) give its length wherever it once lay in the image plane.
+/// Estimates shape components from the ratios of projected bone lengths: a bone's largest projections over the clip
+/// (90th percentile, relative to the body's apparent size) give its length if it lay in the image plane at some time.
 /// Fits log ratios of torso, thighs, shins, upper arms and forearms with σ = 0.03, and N(0, 1) on each component; a log
 /// ratio counts at most 0.35 from the mean body's. Zero without enough frames.
 Eigen::VectorXd EstimateShape(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& model,

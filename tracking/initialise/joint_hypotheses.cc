@@ -20,7 +20,7 @@ using namespace hypotheses_internal;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
-/// The frames that are looked at, and the two searches over them.
+/// The frames used, and the two searches over them.
 class ClipHypotheses {
  public:
   ClipHypotheses(std::vector<Rays> rays, std::vector<double> times, const Lengths& lengths, const PosePrior* prior,
@@ -32,7 +32,7 @@ class ClipHypotheses {
         depth_(RootDepths(rays_, times_, lengths)),
         limb_costs_(prior, lengths, options) {}
 
-  /// Camera-from-torso of every frame; adds what they cost.
+  /// Camera-from-torso of every frame; adds their cost.
   std::vector<Matrix3d> ChooseTorsos(double* cost) const {
     const size_t T = rays_.size();
     std::vector<std::vector<TorsoState>> states(T);
@@ -119,7 +119,7 @@ class ClipHypotheses {
     for (int k : kTorso) centre_ray += rays_[t].ray[k] / 4;
     const Vector3d centre(centre_ray.x() * depth_[t], centre_ray.y() * depth_[t], depth_[t]);
     const Vector3d offset = torso * (lengths_.rest.row(kLimbs[limb][0]).transpose() - Centroid(lengths_.rest, kTorso));
-    // The observed ray is trusted across the view, the plate for the depth.
+    // Across the view the observed ray is used, for the depth the rigid torso.
     const double z = centre.z() + offset.z();
     const Vector2d& ray = rays_[t].ray[kLimbs[limb][0]];
     return {ray.x() * z, ray.y() * z, z};
@@ -131,7 +131,7 @@ class ClipHypotheses {
     return sum;
   }
 
-  /// A torso is as plausible as the best that its limbs could do.
+  /// Cost of the best limb hypotheses, given the torso.
   void AddBestLimbs(size_t t, TorsoState* state) const {
     const Vector3d centre = CentreOf(t, state->rotation);
     for (int limb = 0; limb < 4; ++limb) {

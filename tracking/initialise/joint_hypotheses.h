@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Hypotheses of 3D joints from one camera's 2D joints, without a start: what the depth ambiguity allows, chosen over
-/// the clip.
+/// Hypotheses of 3D joints from one camera's 2D joints, without a start: the solutions of the depth ambiguity, selected
+/// over the clip.
 ///
-/// 1. Depth of the root from the image size of torso and legs (the largest over a few seconds is unforeshortened).
-/// 2. Torso orientation: a trellis over heading and tilt; each state is scored by how its shoulders and hips project,
-///    by which parts of the face are seen, by how plausible the best limb hypotheses would be, and by angular speed.
+/// 1. Depth of the root from the image size of torso and legs (the maximum over a few seconds is unforeshortened).
+/// 2. Torso orientation: a trellis over heading and tilt; the score of a state is the reprojection of shoulders and
+///    hips, the visibility of the parts of the face, the cost of the best limb hypotheses, and the angular speed.
 /// 3. Limbs: every limb has four hypotheses (each of its two bones points towards the camera or away: the sphere around
-///    the known end meets the viewing ray twice); a trellis over the clip picks them by the learned density of limb
-///    directions, by what low confidence implies about occlusion behind the torso, and by continuity.
+///    the known end meets the viewing ray twice); a trellis over the clip selects them by the learned density of limb
+///    directions, by occlusion behind the torso as implied by low confidence, and by continuity.
 /// Source: Lee & Chen 1985 for the binary tree of hypotheses; the cues and their statistics are described in
 /// docs/tracking.md.
 #pragma once
@@ -33,14 +33,14 @@ struct JointHypothesis {
 };
 
 struct JointHypothesesResult {
-  std::vector<int> frames;                  ///< frame indices that were looked at, ascending
+  std::vector<int> frames;                  ///< indices of the frames used, ascending
   std::vector<JointHypothesis> hypotheses;  ///< one for each
   double cost = 0;                          ///< of the chosen paths, for comparing alternatives
 };
 
 /// `keypoints` must contain CocoNames() landmarks (any subset); frames without both hips or both shoulders are bridged.
-/// Empty when fewer than one frame shows a torso. `camera` gives rays; `rest_points` are the body's 17 landmarks in the
-/// rest pose, metres.
+/// Empty when no frame shows a torso. `camera` gives rays; `rest_points` are the body's 17 landmarks in the rest pose,
+/// metres.
 JointHypothesesResult FindJointHypotheses(const KeypointSequence& keypoints, const Camera& camera,
                                           const MatrixX3d& rest_points, const PosePrior* prior,
                                           const JointHypothesesOptions& options);

@@ -64,7 +64,7 @@ std::vector<double> RootDepths(const std::vector<Rays>& rays, const std::vector<
       legs += (r.ray[kLimbs[l][1]] - r.ray[kLimbs[l][0]]).norm() + (r.ray[kLimbs[l][2]] - r.ray[kLimbs[l][1]]).norm();
       ++count;
     }
-    // Without legs the torso alone stands for the body.
+    // Without legs the torso alone gives the body's length.
     size[t] = count > 0 ? torso + legs / count : torso * body / lengths.torso;
   }
   // Frames within `half_window` seconds of frame t: [first, end).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Viewing rays for the search for 3D joints (joint_hypotheses.h): the rays of the detections, the lengths of the body,
-/// and how far away the body is.
+/// and its depth.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,7 +34,7 @@ struct Rays {
   std::array<Eigen::Vector2d, 17> ray;
   std::array<double, 17> confidence{};
   std::array<bool, 17> seen{};
-  /// Shoulders and hips are seen, and not all in one place.
+  /// True if shoulders and hips are seen, and not all at one point.
   [[nodiscard]] bool has_torso() const {
     return seen[kLeftShoulder] && seen[kRightShoulder] && seen[kLeftHip] && seen[kRightHip] &&
            ((ray[kLeftShoulder] + ray[kRightShoulder]) - (ray[kLeftHip] + ray[kRightHip])).norm() > 1e-6;
@@ -53,10 +53,10 @@ struct Lengths {
 };
 
 /// Depth of the root for every frame: body length over its apparent length, the apparent length being the 85th
-/// percentile over ±1.5 s (bones only ever look shorter), smoothed over the same window.
+/// percentile over ±1.5 s (foreshortening only shortens bones), smoothed over the same window.
 std::vector<double> RootDepths(const std::vector<Rays>& rays, const std::vector<double>& times, const Lengths& lengths);
 
-/// A squared error that grows up to `limit` and no further.
+/// A squared error that saturates at `limit`.
 inline double Saturated(double squared, double limit) { return limit * squared / (limit + squared); }
 
 }  // namespace bodyloom::hypotheses_internal

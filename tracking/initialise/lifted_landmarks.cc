@@ -18,12 +18,12 @@ std::vector<LiftedLandmarks::Nearest> NearestLandmarks(const BodyModel& model, c
   const Eigen::RowVector3d hips = points.middleRows<2>(kLifterLeftHip).colwise().mean();
   std::vector<LiftedLandmarks::Nearest> nearest(model.num_joints());
   for (int j = 0; j < model.num_joints(); ++j) {
-    double least = 0;
+    double minimum = 0;
     for (int k = 0; k < kLifterPoints; ++k) {
       if (!landmarks.known[k]) continue;
       const double distance = (points.row(k) - joints.row(j)).norm();
-      if (nearest[j].landmark >= 0 && distance >= least) continue;
-      least = distance;
+      if (nearest[j].landmark >= 0 && distance >= minimum) continue;
+      minimum = distance;
       nearest[j].landmark = k;
       nearest[j].share = std::min(1.0, (joints.row(j) - hips).norm() / (points.row(k) - hips).norm());
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The body's points that the lifter speaks of.
+/// The lifter's landmarks as points of the body.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct LiftedLandmarks {
   std::array<CompiledPoint, LifterOutput::kPoints> points;
   std::array<bool, LifterOutput::kPoints> known{};  ///< the body has it
   std::vector<Nearest> of_joint;                    ///< J
-  /// Both hips, both shoulders and a way to measure the body's length: without them nothing can be lifted.
+  /// True if the body has both hips, both shoulders and the landmarks of its reference length, which the lifter needs.
   [[nodiscard]] bool IsUsable() const;
 };
 LiftedLandmarks CompileLiftedLandmarks(const BodyModel& model, int num_betas);

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kRayKernel = 0.15;  ///< metres off its ray at which a landmark stops pulling
+constexpr double kRayKernel = 0.15;  ///< kernel of a landmark's distance from its ray, metres
 constexpr double kNearest = 0.3;     ///< metres; a person nearer than that is a failed estimate
 constexpr double kMinLiftConfidence = 0.1;
 
@@ -29,7 +29,7 @@ struct Sight {
   double weight;
 };
 
-/// Where the mid-hip is, from the rays of one frame.
+/// Position of the mid-hip from the rays of one frame.
 std::optional<Vector3d> PlaceOnRays(const std::vector<Sight>& sights, const MatrixX3d& offsets) {
   if (sights.size() < 3) return std::nullopt;
   Vector3d hips = Vector3d::Zero();

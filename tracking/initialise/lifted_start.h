@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The lifter's landmarks as a start for the tracker: placed in front of the camera, turned into poses.
+/// Starting poses for the tracker from the lifter's landmarks: positions in the camera frame and joint rotations.
 #pragma once
 
 #include <vector>
@@ -22,15 +22,15 @@ struct LiftedStart {
 double LifterMetres(const BodyModel& body, const Eigen::VectorXd& betas);
 
 /// Poses of lifted frames, one a frame of `keypoints`. In every frame in which at least three landmarks are seen the
-/// mid-hip is placed by least squares: the position t that brings the lifted landmarks nearest to their rays, Σ c_k²
-/// ρ(‖(x_k + t) − its projection on the ray‖²); other frames take their neighbours' depth. Rotations by inverse
-/// kinematics; `betas` give the bones' lengths. Empty when no frame can be placed.
+/// position t of the mid-hip minimises the distance of the lifted landmarks to their rays, Σ c_k² ρ(‖(x_k + t) − its
+/// projection on the ray‖²); other frames take their neighbours' depth. Rotations by inverse kinematics; `betas` give
+/// the bones' lengths. Empty when no frame can be placed.
 std::vector<FrameState> PosesFromLifted(const std::vector<LiftedFrame>& frames, const KeypointSequence& keypoints,
                                         const Camera& camera, const BodyModel& body, const Eigen::VectorXd& betas,
                                         double metres);
 
-/// start->frames → `metres` and `initial`, by PosesFromLifted(). `body` must have the landmarks of
-/// LiftedLandmarks::IsUsable(). Rays come from `camera`. Clears start->frames when no frame can be placed.
+/// Fills `metres` and `initial` from start->frames, by PosesFromLifted(). `body` must have the landmarks of
+/// LiftedLandmarks::IsUsable(). `camera` gives rays. Clears start->frames when no frame can be placed.
 void StartFromLifted(const KeypointSequence& keypoints, const Camera& camera, const BodyModel& body,
                      const Eigen::VectorXd& betas, LiftedStart* start);
 

@@ -44,7 +44,7 @@ LimbCosts::LimbCosts(const PosePrior* prior, const Lengths& lengths, const Joint
   }
 }
 
-/// −log density of a limb's two unit bone directions in the torso frame; 0 for the most common ones is not implied.
+/// −log density of a limb's two unit bone directions in the torso frame; its minimum is not normalised to 0.
 double LimbCosts::Density(int limb, Vector3d upper, Vector3d lower) const {
   if (prior_ == nullptr) return 0;
   if (limb % 2 == 1) {
@@ -91,7 +91,7 @@ Matrix3d TorsoRotation(double yaw, double tilt, double roll) {
          RotationFromAxisAngle({0, yaw, 0});
 }
 
-/// How badly the face's visibility fits a head that points along the torso's front.
+/// Cost of the face's visibility for a head that points along the torso's front.
 double FaceCost(const Rays& rays, const Matrix3d& torso, double depth) {
   const Vector3d to_camera(0, 0, -1);
   const double front = torso.col(2).dot(to_camera), left = torso.col(0).dot(to_camera);
@@ -124,7 +124,7 @@ double FaceCost(const Rays& rays, const Matrix3d& torso, double depth) {
   return cost;
 }
 
-/// The roll that best turns the state's projected torso onto the observed one, and the remaining squared distance in
+/// The roll that best aligns the state's projected torso with the observed one, and the remaining squared distance in
 /// units of the detection noise.
 double FitRoll(const Rays& rays, const Matrix3d& unrolled, double depth, const Lengths& lengths, double* roll) {
   const Vector3d rest_centre = Centroid(lengths.rest, kTorso);

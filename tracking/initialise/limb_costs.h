@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The four hypotheses of a limb (each of its two bones points towards the camera or away) and what each costs: the
-/// learned density of its directions in the torso's frame, and what confidence implies about occlusion by the torso.
+/// The four hypotheses of a limb (each of its two bones points towards the camera or away) and their costs: by the
+/// learned density of its directions in the torso's frame, and by occlusion behind the torso as implied by confidence.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,8 +18,8 @@ class LimbCosts {
   /// Borrows all three; without a prior every direction costs the same.
   LimbCosts(const PosePrior* prior, const Lengths& lengths, const JointHypothesesOptions& options);
 
-  /// The four hypotheses of a limb that starts at `start` (camera frame): end points of both bones. Bones that look
-  /// longer than they are lie in the image plane.
+  /// The four hypotheses of a limb that starts at `start` (camera frame): end points of both bones. A bone whose ray is
+  /// too far away for its length lies in the image plane.
   void Hypotheses(const Rays& rays, int limb, const Eigen::Vector3d& start, Eigen::Vector3d middle[4],
                   Eigen::Vector3d end[4]) const;
 
@@ -41,8 +41,8 @@ class LimbCosts {
   std::optional<DirectionBins> bins_;
 };
 
-// The torso orientations that a frame may have: heading × tilt, turned in the image as the detections are, and what
-// each costs by shoulders, hips, lean and face.
+// The candidate torso orientations of a frame, heading × tilt with the roll of the detections, and their costs by
+// shoulders, hips, lean and face.
 
 struct TorsoState {
   Eigen::Matrix3d rotation;  ///< camera-from-torso

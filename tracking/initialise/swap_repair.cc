@@ -13,8 +13,8 @@ namespace bodyloom {
 namespace {
 
 constexpr float kConfidence = 0.2F;
-constexpr double kSwappedCost = 0.6;  ///< of calling a frame swapped: labels are right unless continuity objects
-constexpr double kJumpKernel = 3;     ///< jumps saturate at this many σ: a cut must not look like a reason to swap
+constexpr double kSwappedCost = 0.6;  ///< of a swapped frame, so that only continuity leads to a swap
+constexpr double kJumpKernel = 3;     ///< jumps saturate at this many σ, so that a cut does not cause a swap
 constexpr double kSpeed = 3;          ///< body sizes a second: σ of a joint's motion in the image
 constexpr double kJitter = 0.02;      ///< body sizes: σ of the detector
 

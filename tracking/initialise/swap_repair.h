@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Repairs detections whose left and right were exchanged for some frames, and finds cuts.
+/// Repairs detections with left and right exchanged in some frames, and finds cuts.
 #pragma once
 
 #include <algorithm>
@@ -19,19 +19,18 @@ int RepairSwaps(KeypointSequence* keypoints);
 
 inline constexpr double kMaxGap_s = 1;  ///< between frames of one shot
 
-/// True where frame t does not continue frame t−1: a gap of more than kMaxGap_s, or the whole body jumping by more than
-/// half its size within a tenth of a second. The first frame is never a cut.
+/// Marks frames t that do not continue frame t−1: after a gap of more than kMaxGap_s, or where the whole body jumps by
+/// more than half its size within a tenth of a second. The first frame is never a cut.
 std::vector<char> FindCuts(const KeypointSequence& keypoints);
 
-/// Whether a detector is sure enough of a landmark to judge motion by it (confidence 0.2).
+/// True if the confidence of a landmark suffices to judge motion by it (0.2).
 bool IsSeen(const Keypoint& point);
 
 /// Diagonal of the box around the seen landmarks of frame t: the person's size in the image, pixels; 0 with fewer
 /// than 4.
 double SeenBodySize(const KeypointSequence& keypoints, int t);
 
-// The cheapest path through a trellis: min over s of Σ_t unary(t, s_t) + Σ_t transition(t, s_{t−1}, s_t).
-
+/// Finds the path of minimum cost through a trellis: min over s of Σ_t unary(t, s_t) + Σ_t transition(t, s_{t−1}, s_t).
 /// unary[t][s] for T steps with any number of states a step (at least one); transition(t, a, b) is the cost of going
 /// from state a of step t−1 to state b of step t. Returns T states. O(Σ S_{t−1} S_t); ties go to the lower index.
 template <typename Transition>

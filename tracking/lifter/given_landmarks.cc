@@ -57,7 +57,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// DensePose's charts by what they show; two a limb bone (front and back, or outside and inside).
+/// Regions of DensePose's charts; two charts a limb bone (front and back, or outside and inside).
 enum Region : uint8_t {
   kNoPart = 0,
   kTorso,
@@ -132,7 +132,7 @@ Vector2d Median(const std::vector<Vector2d>& points) {
   return {MedianOf(&x), MedianOf(&y)};
 }
 
-/// One frame's labels as regions, with what the joints are read from.
+/// One frame's labels as regions, with the measurements that give the joints.
 class RegionImage {
  public:
   RegionImage(const PartLabelSequence& labels, int frame) {
@@ -164,7 +164,7 @@ class RegionImage {
   [[nodiscard]] double extent_px() const { return extent_; }
   [[nodiscard]] int count(int region) const { return count_[region]; }
   [[nodiscard]] Vector2d centre(int region) const { return sum_[region] / std::max(1, count_[region]); }
-  /// Of the visible torso, −1 (all back) to 1 (all front); 0 without a torso.
+  /// Visible side of the torso, −1 (all back) to 1 (all front); 0 without a torso.
   [[nodiscard]] double facing() const { return front_ + back_ > 0 ? double(front_ - back_) / (front_ + back_) : 0; }
 
   /// Midpoints of neighbouring pixels of which one is in `a` and the other in `b`.
@@ -270,7 +270,7 @@ class FrameReader {
     Set(kToe + side, ankle + 0.9 * (toe - ankle), 0.7);
   }
 
-  /// Which way the head looks is taken from the torso: half a head looks the same from both sides.
+  /// Takes the head's direction from the torso, since the labels of the head's halves do not tell front from back.
   void Face() {
     const int right = image_.count(kHeadRight), left = image_.count(kHeadLeft), head = left + right;
     if (head < 8) return;

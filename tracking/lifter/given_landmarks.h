@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// 3D landmarks of another system in the place of the lifter's.
+/// Replaces the lifter's landmarks by 3D landmarks of another system.
 #pragma once
 
 #include <vector>
@@ -10,34 +10,34 @@
 
 namespace bodyloom {
 
-/// Scales of the error (LiftedFrame::sigma) of landmarks whose system does not say: about 4 cm across and 7 cm along
-/// the view for each coordinate, as image networks of 2025 report.
+/// Scales of the error (LiftedFrame::sigma) of landmarks whose system gives none: about 4 cm across and 7 cm along the
+/// view for each coordinate, as image networks of 2025 report.
 struct GivenLandmarkSigma {
   double across_m = 0.02, along_m = 0.035;
 };
 
-/// In every frame of `points` that has rows (21×3, metres, camera axes, LifterPointNames()), the frame's landmarks and
-/// limbs become these, relative to the mid-hip, in units of the points' own torso + leg length; a limb has one
-/// hypothesis. The vertical and the contacts stay what the lifter says, and so do the other frames. Throws
-/// std::invalid_argument for another number of frames and for points without a torso and legs.
+/// Replaces landmarks and limbs in every frame for which `points` has rows (21×3, metres, camera axes,
+/// LifterPointNames()): relative to the mid-hip, in units of the points' own torso + leg length, with one hypothesis a
+/// limb. Vertical and contacts remain the lifter's, and so do the other frames. Throws std::invalid_argument for
+/// another number of frames and for points without a torso and legs.
 void TakeGivenLandmarks(const std::vector<MatrixX3d>& points, const GivenLandmarkSigma& sigma,
                         std::vector<LiftedFrame>* frames);
 
-// 2D joints read off DensePose part labels, so that a clip with nothing else can be started from.
+// 2D joints from DensePose part labels, as a start for clips without other joints.
 //
-// Two parts that meet, meet at a joint: upper and lower arm at the elbow, lower arm and hand at the wrist, torso and
-// thigh at the hip, thigh and shin at the knee, shin and foot at the ankle. The joint is the median of the pixels
-// where the two labels touch; a limb's part that lies across another body part touches it too, but not its own
-// neighbour. The shoulder is where the upper arm touches the torso farthest from the elbow, as a hanging arm touches
-// it all the way down. Nose and ears come from the two halves of the head, and the torso's front or back says which
-// way it looks.
+// Neighbouring parts meet at a joint: upper and lower arm at the elbow, lower arm and hand at the wrist, torso and
+// thigh at the hip, thigh and shin at the knee, shin and foot at the ankle. The joint is the median of the pixels where
+// the two labels touch; a limb in front of another body part touches that part too, which is not its neighbour. The
+// shoulder is the contact of upper arm and torso farthest from the elbow, since a hanging arm touches the torso along
+// its whole length. Nose and ears come from the two halves of the head, and its direction from the visible side of the
+// torso, front or back.
 //
-// The boundary between two charts is not the joint itself; it is taken as it stands, a median of less than 0.05 of the
-// person's height away (tests/data_tools/observations/part_labels_test.cc).
+// The boundary between two charts is not the joint itself, but is used as it is: the median distance is below 0.05 of
+// the person's height (tests/data_tools/observations/part_labels_test.cc).
 
 struct PartKeypointsOptions {
   double min_contact = 0.01;  ///< shortest boundary that counts, as a share of the person's height in the image
-  double confidence = 0.6;    ///< of a joint whose boundary is seen in full; these are not a detector's joints
+  double confidence = 0.6;    ///< of a joint whose boundary is fully visible; lower than a detector's
 };
 
 /// T×(17 + 2) keypoints: CocoNames() and left_big_toe, right_big_toe; confidence 0 where the parts do not touch. The

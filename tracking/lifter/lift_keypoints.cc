@@ -17,7 +17,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSlowest = 14;  ///< frames a second; below, frames are put in between
+constexpr double kSlowest = 14;  ///< frames a second; below it frames are interpolated
 
 /// Frames first, first + stride, … of the clip, with `between` − 1 interpolated frames after each (stride 1 then).
 struct SamplingPhase {
@@ -25,7 +25,7 @@ struct SamplingPhase {
   [[nodiscard]] int num_samples() const { return (count - 1) * between + 1; }
 };
 
-/// How the frames [begin, end) are read.
+/// Sampling phases of the frames [begin, end); one only unless `all`.
 std::vector<SamplingPhase> PhasesOf(const std::vector<double>& timestamps, int begin, int end, bool all) {
   const int count = end - begin;
   double fps = kLifterRate;
@@ -91,7 +91,7 @@ LifterFrames SamplePhase(const LifterFrames& all, const SamplingPhase& phase) {
   return frames;
 }
 
-/// Frames that no phase has read: in between their neighbours, limbs of the nearer one.
+/// Fills frames that no phase has sampled, by interpolation between their neighbours.
 void FillBetween(const std::vector<char>& read, int begin, int end, std::vector<LiftedFrame>* frames) {
   int last = -1;
   for (int t = begin; t < end; ++t) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// 2D landmarks of a clip → 3D landmarks with their uncertainty, by the lifter.
+/// Lifts 2D landmarks of a clip to 3D landmarks with their uncertainty, by the lifter network.
 ///
-/// The network works at about 20 frames a second. Faster clips are read in k = round(fps/20) interleaved phases, slower
-/// ones with interpolated frames in between. It runs a second time on the mirrored clip: torso landmarks, up and
-/// contact are averaged, and a limb's hypotheses of both runs stand side by side. A cut ends one clip and begins
-/// another.
+/// The network works at about 20 frames a second. Faster clips are processed in k = round(fps/20) interleaved phases,
+/// slower ones with interpolated frames in between. It runs a second time on the mirrored clip: torso landmarks, up and
+/// contact are averaged, and a limb's hypotheses of both runs are concatenated. The stretches between cuts are
+/// processed separately.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,14 +23,14 @@ struct LiftOptions {
   bool mirrored = true;    ///< the second run
   bool all_phases = true;  ///< false: one phase, frames in between interpolated; faster and rougher
   int num_threads = 1;
-  int last_samples = 0;  ///< above 0: only the last so many that each phase reads are computed; frames before are empty
+  int last_samples = 0;  ///< above 0: only that many last samples of each phase are computed; earlier frames are empty
 };
 
-/// Between two frames, s in [0, 1]: points by straight lines, limbs and uncertainty of the nearer one.
+/// Interpolates between two frames, s in [0, 1]: points linearly, limbs and uncertainty of the nearer frame.
 LiftedFrame InterpolateLifted(const LiftedFrame& a, const LiftedFrame& b, double s);
 
-/// One entry a frame; empty when no landmark is ever seen. `cut_before` (T, or empty) marks frames that do not continue
-/// the one before. Throws std::invalid_argument for weights of another number of inputs.
+/// Returns one entry a frame; empty when no frame shows a landmark. `cut_before` (T, or empty) marks frames that do not
+/// continue the one before. Throws std::invalid_argument for weights of another number of inputs.
 std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const Camera& camera, bool focal_known,
                                        const std::vector<char>& cut_before, const LifterWeights& weights,
                                        const LiftOptions& options);

@@ -17,7 +17,7 @@ using Eigen::Matrix3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float kMaxCoordinate = 4, kMaxMotion = 2;  // a wrong detection must not be the loudest thing in the window
+constexpr float kMaxCoordinate = 4, kMaxMotion = 2;  // limits the influence of a wrong detection on the window
 constexpr float kMinCosine = 0.1F;                   // 84° off the virtual camera's axis
 constexpr float kMinScale = 1e-3F;                   // a person more than a kilometre away
 constexpr float kDefaultScale = 0.27F;               // about five metres away: log S + 1.3 = 0
@@ -31,8 +31,8 @@ struct Part {
   int from, to;
   float share;
 };
-// What gives the size when neither torso nor legs do. Parts on the head are short, so noise doubles them easily: they
-// come last.
+// Parts that give the size when neither torso nor legs are seen. Parts of the head come last: they are short, so noise
+// easily doubles them.
 constexpr Part kSizeParts[] = {
     {kLifterLeftShoulder, kLifterLeftShoulder + 1, 0.269F},  {kLifterLeftShoulder, kLifterLeftElbow, 0.186F},
     {kLifterLeftShoulder + 1, kLifterLeftElbow + 1, 0.186F}, {kLifterLeftElbow, kLifterLeftWrist, 0.183F},
@@ -155,7 +155,7 @@ std::vector<std::optional<float>> WindowPercentile(const std::vector<std::option
   return result;
 }
 
-/// Of a bone in a frame, divided by S.
+/// Length of a bone in a frame, divided by S.
 std::optional<float> BoneLength(const Frame& frame, const Bone& bone, float scale) {
   float length = 0;
   if (bone.middles) {
@@ -169,7 +169,7 @@ std::optional<float> BoneLength(const Frame& frame, const Bone& bone, float scal
   return std::min(length / scale, kMaxCoordinate);
 }
 
-/// Of every frame and bone: extent in depth and full length, at features + stride·t + 2·bone.
+/// Writes extent in depth and full length of every frame and bone to features + stride·t + 2·bone.
 void Foreshortening(const std::vector<Frame>& frames, const std::vector<float>& scale, size_t stride, float* features) {
   const size_t T = frames.size();
   std::array<std::vector<std::optional<float>>, kLifterBones> length, full;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Input features of the lifter: detections as viewing rays, turned and scaled so that every person looks alike.
+/// Input features of the lifter: detections as viewing rays, normalised in direction and scale.
 ///
-/// The generator of training windows and the tracker both call this, so that training and use cannot differ.
+/// The generator of training windows and the tracker both call this, so that training and inference cannot differ.
 ///
-/// Each frame gets a virtual camera of its own: the real one, turned by the smallest rotation that puts the middle of
+/// Each frame has a virtual camera of its own: the real one, turned by the smallest rotation that puts the middle of
 /// the body (mean direction of the seen shoulders and hips; of all seen points when fewer than two of those are seen;
 /// interpolated in time when nothing is) on the optical axis. All lengths below are in that camera's image plane Z = 1.
 ///   S_t = |mid-shoulder − mid-hip| + mean over the seen legs of (thigh + shin)
 ///   S   = 85th percentile of S_t over the frames within ±(kLifterScaleFrames − 1)/2: the size of the upright person,
-///         whatever the person does in this frame.
+///         independent of the pose in this frame.
 /// A frame that shows only the torso, only legs or only a part of a leg gives S_t by that part's share in the mean
 /// body. One that shows none of these gives a rougher guess (longest limb, shoulder width or head by their shares),
 /// which is used for S only where no better S_t lies within the window, and counts as unknown in the features.
@@ -18,10 +18,10 @@
 ///   log S + 1.3 (0 when the focal length is unknown); focal_known (0 or 1); S_t/S − 0.9 (0 where S_t is unknown);
 ///   the motion of the centre ray since the frame before, in units of S, along x and y of the virtual camera, in
 ///   [−2, 2] (0 at the first frame and where this frame or the one before shows nothing);
-///   for each of the kLifterBones bones what its foreshortening implies: √(max(0, m² − l²)), its extent in depth if it
-///   has its full length m somewhere near, and m itself, where l is its length in this frame and m the 90th percentile
-///   of the lengths of the bone and its mirror image over the same window, both divided by S and at most 4 (0 where an
-///   end is missing). A network can find this by itself, but it takes long: it needs maxima over seconds.
+///   for each of the kLifterBones bones its extent in depth as implied by foreshortening, √(max(0, m² − l²)), and its
+///   full length m, where l is its length in this frame and m the 90th percentile of the lengths of the bone and its
+///   mirror image over the same window, both divided by S and at most 4 (0 where an end is missing). These need maxima
+///   over seconds, which a network learns slowly by itself.
 ///
 /// A point counts as seen when its coordinates are finite, its confidence is positive and its ray lies within 84° of
 /// the body's middle. Everything is finite for every input; a clip in which nothing is seen gives zero coordinates.
@@ -40,7 +40,7 @@ inline constexpr int kLifterInputs = 3 * kLifterPoints + 5 + 2 * kLifterBones;
 inline constexpr double kLifterRate = 20;      ///< frames a second the network works at
 inline constexpr int kLifterScaleFrames = 81;  ///< window of the scale percentile
 
-/// Indices of the points that this project's code speaks of; right = left + 1.
+/// Indices of the points used by name in the code; right = left + 1.
 enum LifterPoint : int {
   kLifterNose = 0,
   kLifterLeftEye = 1,
@@ -76,14 +76,14 @@ struct LifterInput {
 /// Throws std::invalid_argument when the arrays do not have num_frames · kLifterPoints entries.
 LifterInput MakeLifterInput(const LifterFrames& frames);
 
-/// Of the bones of the features, the one that a mirror shows: left and right exchanged.
+/// Index of the mirror image of a bone of the features: left and right exchanged.
 int MirroredLifterBone(int bone);
 
 /// camera_from_virtual of MakeLifterInput(frames) alone.
 std::vector<Eigen::Matrix3f> LifterVirtualCameras(const LifterFrames& frames);
 
-/// The body's own length in which the lifter measures: |mid-shoulder − mid-hip| + mean over the legs of thigh + shin,
-/// of 3·kLifterPoints coordinates (in their unit). Of the rest pose it is the Lref of the lifter's targets.
+/// The lifter's unit of length: |mid-shoulder − mid-hip| + mean over the legs of thigh + shin, of 3·kLifterPoints
+/// coordinates (in their unit). For the rest pose it is the Lref of the lifter's targets.
 float LifterReferenceLength(std::span<const float> points);
 
 }  // namespace bodyloom

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kNormEpsilon = 1e-5F;  // LibTorch's LayerNorm
 
-/// Frames are worked on in strips: their rows and the weights' stay in the second-level cache.
+/// Frames per strip, such that their rows and the weights' stay in the second-level cache.
 constexpr Eigen::Index kStrip = 96;
 
 /// out(r) += W x(r) for `rows` rows of as many values as W has columns.
@@ -65,14 +65,14 @@ RowMatrixXf Convolve(const RowMatrixXf& x, const std::vector<int>& place, const 
   return out;
 }
 
-/// Where each frame stands in a matrix that holds `rows`; −1: nowhere.
+/// Row of each frame in a matrix that holds `rows`; −1: none.
 std::vector<int> PlacesOf(const Rows& rows, int num_frames) {
   std::vector<int> place(num_frames, -1);
   for (size_t i = 0; i < rows.size(); ++i) place[rows[i]] = static_cast<int>(i);
   return place;
 }
 
-/// Each row to mean 0 and variance 1, then scale and shift.
+/// Normalises each row to mean 0 and variance 1, then applies scale and shift.
 RowMatrixXf NormaliseFrames(const RowMatrixXf& x, const Eigen::VectorXf& scale, const Eigen::VectorXf& shift) {
   RowMatrixXf out(x.rows(), x.cols());
   for (Eigen::Index t = 0; t < x.rows(); ++t) {
@@ -90,7 +90,7 @@ RowMatrixXf RunLifter(const LifterWeights& weights, const RowMatrixXf& features,
   BODYLOOM_CHECK(features.cols() == weights.num_inputs(), "lifter: ", features.cols(),
                  " features a frame for a network of ", weights.num_inputs());
   const int T = static_cast<int>(features.rows());
-  // What each layer must know, from the output back.
+  // Rows that each layer needs, from the output back.
   std::vector<Rows> needed(weights.blocks.size() + 1);
   for (int t = last_frames > 0 ? std::max(0, T - last_frames) : 0; t < T; ++t) needed.back().push_back(t);
   for (size_t b = weights.blocks.size(); b-- > 0;) needed[b] = Around(needed[b + 1], weights.blocks[b].dilation, T);

@@ -7,9 +7,9 @@
 
 namespace bodyloom {
 
-/// T×LifterOutput::kSize for T×num_inputs features of consecutive frames; beyond the ends is nothing, as in training.
-/// `last_frames` n > 0: only the last n rows, and only what they depend on is computed; they equal those of the whole.
-/// Throws std::invalid_argument when the features have another number of columns.
+/// Returns T×LifterOutput::kSize for T×num_inputs features of consecutive frames, padded with zeros at the ends as in
+/// training. `last_frames` n > 0: only the last n rows and what they depend on are computed; they equal those of the
+/// whole. Throws std::invalid_argument when the features have another number of columns.
 RowMatrixXf RunLifter(const LifterWeights& weights, const RowMatrixXf& features, int last_frames = 0);
 
 }  // namespace bodyloom

@@ -14,11 +14,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// The landmark seen in a mirror: left and right exchanged.
+/// Index of the mirrored landmark: left and right exchanged.
 int MirroredPoint(int k) { return k == kLifterNose ? k : ((k - 1) ^ 1) + 1; }
 int MirroredLimb(int limb) { return limb ^ 1; }
 
-/// One run's output of one frame; a mirrored run is read as if it were not.
+/// One run's output of one frame; a mirrored run is mirrored back.
 class OutputReader {
  public:
   OutputReader(const RowMatrixXf& output, Eigen::Index row, bool mirrored)

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "geometry/base/check.h"
-#include "tracking/initialise/impossible_frames.h"
+#include "tracking/initialise/outlier_frames.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/problem/input_checks.h"
 #include "tracking/terms/observability.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A live tracker's history of the 2D joints: the last seconds, cleaned, and a thinned sample of the whole shot. Memory
-/// is bounded.
+/// History of a live tracker's 2D joints: the last seconds, cleaned, and a thinned sample of the whole shot. Memory is
+/// bounded.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace bodyloom {
 
-/// How a frame follows the ones before.
+/// Relation of a frame to the ones before.
 enum class Continuity {
   kContinues,
-  kHeld,  ///< it jumps away; whether to come back is not known yet, and it counts as not seen
-  kCut    ///< it does not continue them; nor did the frames that were held
+  kHeld,  ///< it jumps away, perhaps for a short time; until that is known it counts as not seen
+  kCut    ///< neither it nor the held frames continue them
 };
 
 class LiveHistory {
@@ -22,20 +22,20 @@ class LiveHistory {
   /// Keeps `seconds` of frames, at most `max_frames` of them, and as many of the thinned sample.
   LiveHistory(std::vector<std::string> names, int image_width, int image_height, double seconds, int max_frames);
 
-  /// Appends a frame: unusable joints become missing, left–right pairs that jump to each other's place are exchanged
-  /// back (RepairSwaps() over the last frames).
+  /// Appends a frame: unusable joints become missing, and swapped left–right pairs are exchanged back (RepairSwaps()
+  /// over the last frames).
   ///
-  /// Frames from a jump on (FindCuts()) are held, and stay empty when one continues the frame before the jump again
-  /// (ContinuesFrame()). When one comes more than hold_s after the first of them there is a cut: all that was before is
-  /// forgotten, and the history begins with the held frames since the last jump among them. hold_s = 0, and more than a
-  /// second since the person was seen: a cut at once.
+  /// Frames from a jump on (FindCuts()) are held. They stay empty when a later frame continues the frame before the
+  /// jump (ContinuesFrame()). A held frame more than hold_s after the first of them makes a cut: all earlier frames are
+  /// dropped, and the history begins with the held frames since the last jump among them. With hold_s = 0, or more than
+  /// a second after the person was last seen, a jump is a cut at once.
   Continuity Add(double timestamp, const std::vector<Keypoint>& points, double hold_s);
 
   /// Frames …, newest − 2·stride, newest − stride, newest: at most `count`, oldest first.
   [[nodiscard]] KeypointSequence Recent(int count, int stride) const;
   /// At most max_frames of the shot, evenly thinned.
   [[nodiscard]] const KeypointSequence& Sample() const { return sample_; }
-  /// Whether the newest frame shows a landmark that the solver would use.
+  /// True if the newest frame shows a landmark that the solver would use.
   [[nodiscard]] bool NewestIsSeen() const;
   /// Median time step of the last frames, seconds; 0 with fewer than two.
   [[nodiscard]] double TimeStep() const;
@@ -45,7 +45,7 @@ class LiveHistory {
   [[nodiscard]] int num_swaps_repaired() const { return num_swaps_repaired_ / 2; }
 
  private:
-  /// Whether `frame` cannot follow `before`: FindCuts().
+  /// True if `frame` does not continue `before`: FindCuts().
   [[nodiscard]] static bool IsCut(const KeypointSequence& before, const KeypointSequence& frame);
   /// Appends a clean frame that continues the ones before.
   void Put(KeypointSequence frame);

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double kOffLimb_m = 0.25;
 constexpr int kReadingsBetweenTries = 5;
 constexpr int kTryIterations = 5;
-constexpr double kTryGain = 0.5;  ///< of the cost of each frame: less does not pay for a jump
+constexpr double kTryGain = 0.5;  ///< required decrease of the cost per frame; less does not justify a jump
 constexpr const char* kLimbJoints[4][2] = {
     {"l_shoulder", "l_elbow"}, {"r_shoulder", "r_elbow"}, {"l_hip", "l_knee"}, {"r_hip", "r_knee"}};
 
@@ -103,8 +103,7 @@ void LiveLimbs::Try(const LiveSetup& setup, const LiveReading& reading, LiveWind
     found = true;
   }
   if (!found) return;
-  // What the frames before imply about the pose belongs to another one: the first of these begins a shot for the
-  // solver.
+  // The prior from earlier frames is for the rejected pose, so the first of these frames begins a shot for the solver.
   for (int t = 0; t < count; ++t) {
     problem.states[T - count + t] = best.states[t];
     lag.Touch(T - count + t);
@@ -132,7 +131,7 @@ LiveReading LiveLifter::Ask(const LiveSetup& setup, LiveWindow* window) {
   const int stride = reading.stride;
   if (++since_last_ < stride) return {};
   since_last_ = 0;
-  // The newest, and those not handed out yet again.
+  // The newest frame, and again those not returned yet.
   const int num_read = (setup.options.lag + stride - 1) / stride + 1;
   const KeypointSequence seen = window->history().Recent(kLifterReach + num_read, stride);
   const int samples = seen.num_frames();

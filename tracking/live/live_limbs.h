@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Limbs on the wrong side of a live tracker's pose: the lifter's poses are tried against it.
+/// Runs the lifter in a live tracker, and corrects limbs on the wrong side by its poses.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,6 @@
 
 namespace bodyloom {
 
-// The lifter in a live tracker: read at its own rate on what is past, and again when frames have come behind.
-
 /// The lifter's predictions for the window's last frames.
 struct LiveReading {
   std::vector<LiftedFrame> frames;  ///< one frame every `stride`, the last of them the window's last; empty: not run
@@ -18,11 +16,12 @@ struct LiveReading {
   double metres = 0;  ///< of its unit
 };
 
+/// Runs the lifter at its own rate on the past frames; the frames still open are predicted again with later context.
 class LiveLifter {
  public:
   /// The next frame counts as the first of a shot.
   void Restart() { since_last_ = 0; }
-  /// Runs the lifter where its turn has come, and puts its predictions into the window's frames of the current shot.
+  /// Runs the lifter if it is due, and writes its predictions to the window's frames of the current shot.
   LiveReading Ask(const LiveSetup& setup, LiveWindow* window);
 
  private:
@@ -31,9 +30,9 @@ class LiveLifter {
 
 class LiveLimbs {
  public:
-  /// Where limbs of the window's last frames are not where the lifter predicts them, tries its poses instead in a short
-  /// solve, of these limbs alone and of the whole body, and keeps what costs less. Pauses for some readings after a
-  /// try.
+  /// Tries the lifter's poses in short solves when limbs of the window's last frames are far from its predictions, once
+  /// for these limbs only and once for the whole body, and keeps the solution of lower cost. Pauses for some readings
+  /// after a try.
   void Try(const LiveSetup& setup, const LiveReading& reading, LiveWindow* window);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Options and data of a live tracker: what stays the same, frames as they come, and its results.
+/// Options of a live tracker, its input (constant, and per frame) and its results.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,10 +27,10 @@ struct LiveTrackerOptions {
   int context = 4;           ///< frames before those that stay in the window; at least 2
   int iterations = 2;        ///< solver iterations a frame
   int start_iterations = 8;  ///< the same for the first lag + 1 frames of a shot
-  int max_dense = 600;       ///< dense keypoints of a frame; of more, about this many stand for all
+  int max_dense = 600;       ///< dense keypoints of a frame; of more, about this many are chosen to represent all
   double lost_after_s = 1;   ///< without any observation the person is lost
-  /// Frames whose 2D joints jump away from the person count as not seen until they come back, or until they have lasted
-  /// for longer than this; then there is a cut, at the first of them that has not been handed out. 0: a cut at once
+  /// Frames whose 2D joints jump away from the person count as not seen until they come back. After this duration they
+  /// are a cut, at the first of them that has not been returned. 0: a cut at once.
   double max_jump_s = 0.15;
   double reuse_linearisation = 0.1;  ///< ChainOptions::reuse_linearisation
   /// Camera knowledge, weights, threads, estimate_shape, skip_unneeded and estimate_uncertainty mean what they mean for
@@ -40,7 +40,7 @@ struct LiveTrackerOptions {
   bool IsValid(std::string* why) const;
 };
 
-/// What stays the same from frame to frame. Pointers are borrowed; those that may be null are marked.
+/// Input that is constant over the frames. Pointers are borrowed; those that may be null are marked.
 struct LiveTrackerInput {
   const BodyModel* body = nullptr;
   const PosePrior* prior = nullptr;       ///< or null
@@ -51,7 +51,7 @@ struct LiveTrackerInput {
   bool dense = false;                     ///< dense keypoints may come
 };
 
-/// One frame as it comes. Anything may be missing or not finite; it counts as not seen.
+/// Observations of one frame. Missing values and values that are not finite count as not seen.
 struct LiveObservations {
   double timestamp = 0;             ///< seconds, larger than the frame's before
   std::vector<Keypoint> keypoints;  ///< one a landmark, or none
@@ -65,7 +65,7 @@ struct LiveFrame {
   FrameStatus status = FrameStatus::kLost;
   bool cut_before = false;  ///< does not continue the frame before
   FrameState state;         ///< NaN when lost
-  Eigen::VectorXd betas;    ///< as known when the frame is handed out
+  Eigen::VectorXd betas;    ///< as known when the frame is returned
   Camera camera;            ///< of the frame, with the focal length as known then
   /// J standard deviations of the joints' positions about the middle of the hips, metres (uncertainty.h), as known
   /// then; NaN when lost, or without TrackSequenceOptions::estimate_uncertainty.

@@ -38,6 +38,9 @@ LiveSetup::LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& ch
     camera = MakePinhole(camera.width, camera.height, std::exp(focal.log_mean));
   }
   layout = FrameLayout::Make(model, options.solve.camera_knowledge, camera, active, num_betas);
+  for (const UserTerm& term : options.solve.user_terms) {
+    user_inputs.push_back(CompileInputs(term, model, layout.num_betas));
+  }
   if (input.prior != nullptr && input.prior->num_components() > 0) {
     prior = std::make_shared<const MixturePrior>(*input.prior, model, active);
   }

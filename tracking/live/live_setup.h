@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The setup of a live tracker, fixed before the first frame: body, camera, priors, which joints are unknowns.
+/// Setup of a live tracker, fixed before the first frame: body, camera, priors, and the joints that are unknowns.
 #pragma once
 
 #include <array>
@@ -16,20 +16,21 @@ namespace bodyloom {
 
 /// Points into itself: not to be copied.
 struct LiveSetup {
-  /// Throws std::invalid_argument when input or options cannot be.
+  /// Throws std::invalid_argument for invalid input or options.
   LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& chosen);
   LiveSetup(const LiveSetup&) = delete;
   LiveSetup& operator=(const LiveSetup&) = delete;
 
-  /// The clip's layout, shape and focal length at their priors' means, and no frames.
+  /// A problem without frames, with the clip's layout and with shape and focal length at the means of their priors.
   [[nodiscard]] SequenceProblem EmptyProblem() const;
-  /// Throws std::invalid_argument when a frame cannot come after one at `last_s` seconds (null: after none).
+  /// Throws std::invalid_argument when a frame cannot follow one at `last_s` seconds (null: it is the first).
   void CheckObservations(const LiveObservations& observations, const double* last_s) const;
 
   const LiveTrackerInput input;
   const LiveTrackerOptions options;
   int threads = 1;
   FrameLayout layout;
+  std::vector<std::shared_ptr<const CompiledInputs>> user_inputs;  ///< of options.solve.user_terms
   ObservedLandmarks landmarks;
   LiftedLandmarks lifted_landmarks;
   std::shared_ptr<const MixturePrior> prior;  ///< null: none

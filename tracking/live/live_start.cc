@@ -64,7 +64,7 @@ std::vector<FrameState> FindLiveStates(const LiveSetup& setup, int count, LiveWi
 bool StartShot(const LiveSetup& setup, LiveWindow* window) {
   std::deque<LiveRecord>& records = window->records();
   int open = window->NumOpen();
-  while (!(records.end() - open)->seen) --open;  // what was not seen before the first sight stays lost
+  while (!(records.end() - open)->seen) --open;  // frames before the first observation stay lost
   const std::vector<FrameState> states = FindLiveStates(setup, open, window);
   if (states.empty()) return false;
   for (int i = 0; i < open; ++i) {

@@ -43,7 +43,7 @@ class LiveTracker::Impl {
   [[nodiscard]] int num_swaps_repaired() const { return swaps_before_ + clip_->window.history().num_swaps_repaired(); }
 
  private:
-  /// Everything that begins afresh with a clip.
+  /// State that is reset for each clip.
   struct Clip {
     Clip(const LiveSetup& setup, int64_t first_index) : window(setup, first_index) {}
     LiveWindow window;
@@ -54,9 +54,9 @@ class LiveTracker::Impl {
 
   /// The newest frame continues the shot.
   void Track(LiveRecord* newest);
-  /// The records' frames, in order, which are not handed out yet.
-  std::vector<LiveFrame> HandOut(const std::deque<LiveRecord>::iterator& begin,
-                                 const std::deque<LiveRecord>::iterator& end);
+  /// Frames of the records that have not been returned yet, in order.
+  std::vector<LiveFrame> ReleaseFrames(const std::deque<LiveRecord>::iterator& begin,
+                                       const std::deque<LiveRecord>::iterator& end);
 
   const LiveSetup setup_;
   int64_t pushed_ = 0;
@@ -80,7 +80,7 @@ std::optional<LiveFrame> LiveTracker::Impl::Push(const LiveObservations& observa
   const auto waits = [](const LiveRecord& record) { return !record.handed_out; };
   if (std::count_if(records.begin(), records.end(), waits) > setup_.options.lag) {
     const auto first = std::find_if(records.begin(), records.end(), waits);
-    out = std::move(HandOut(first, first + 1).front());
+    out = std::move(ReleaseFrames(first, first + 1).front());
   }
   window.DropDone();
   return out;
@@ -101,7 +101,7 @@ void LiveTracker::Impl::Track(LiveRecord* newest) {
   }
   window.Add(newest, start, false);
   if (young) {
-    // Nothing of the shot has been handed out yet.
+    // No frame of the shot has been returned yet.
     RestartShot(setup_, newest->seen ? window.shot_frames() : 0, &window);
     return;
   }
@@ -110,8 +110,8 @@ void LiveTracker::Impl::Track(LiveRecord* newest) {
   window.Solve(setup_.options.iterations);
 }
 
-std::vector<LiveFrame> LiveTracker::Impl::HandOut(const std::deque<LiveRecord>::iterator& begin,
-                                                  const std::deque<LiveRecord>::iterator& end) {
+std::vector<LiveFrame> LiveTracker::Impl::ReleaseFrames(const std::deque<LiveRecord>::iterator& begin,
+                                                        const std::deque<LiveRecord>::iterator& end) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const int num_joints = setup_.input.body->num_joints();
   LiveWindow& window = clip_->window;
@@ -153,7 +153,7 @@ std::vector<LiveFrame> LiveTracker::Impl::Finish() {
   std::deque<LiveRecord>& records = clip_->window.records();
   const auto first =
       std::find_if(records.begin(), records.end(), [](const LiveRecord& record) { return !record.handed_out; });
-  std::vector<LiveFrame> out = HandOut(first, records.end());
+  std::vector<LiveFrame> out = ReleaseFrames(first, records.end());
   iterations_before_ = num_iterations();
   swaps_before_ = num_swaps_repaired();
   left_out_before_ = num_frames_left_out();

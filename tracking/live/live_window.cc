@@ -19,7 +19,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kHistory_s = 4.2;  ///< what the lifter looks back on
+constexpr double kHistory_s = 4.2;  ///< past frames that the lifter uses
 constexpr int kHistoryFrames = 512;
 
 std::unique_ptr<FixedLag> MakeLag(const LiveSetup& setup, SequenceProblem problem) {
@@ -77,14 +77,14 @@ LiveRecord& LiveWindow::Append(const LiveObservations& observations) {
 
 void LiveWindow::Release(int count) {
   for (auto it = records_.rbegin(); it != records_.rend() && count > 0; ++it, --count) {
-    if (!it->held || it->handed_out) return;  // what was handed out stays as it was
+    if (!it->held || it->handed_out) return;  // returned frames do not change
     --num_held_;
     it->dense = std::move(it->held->dense);
     it->initialiser = std::move(it->held->initialiser);
     it->seen = it->held->seen || !it->dense.empty();
     it->held.reset();
     it->shot = shot_;
-    it->lifted = LiftedPose();  // predicted for the person before
+    it->lifted = LiftedPose();  // predicted for the previous person
     if (!it->in_window) continue;
     const int slot = SlotOf(*it);
     lag_->problem().frames[slot].Get<LiftedPoseTerm>().pose = nullptr;
@@ -142,8 +142,8 @@ FrameData LiveWindow::Observe(const FrameState& state, LiveRecord* record) const
     initialiser.weight = solve.initialiser_weight;
     if (setup_.layout.knowledge == CameraKnowledge::kWeak) initialiser.translation = state.translation;
   }
-  for (const UserTerm& term : solve.user_terms) {
-    auto cost = MakeUserCostTerm(term, setup_.layout, static_cast<int>(record->index));
+  for (size_t i = 0; i < solve.user_terms.size(); ++i) {
+    auto cost = MakeUserCostTerm(solve.user_terms[i], setup_.user_inputs[i], static_cast<int>(record->index));
     if (cost != nullptr) frame.terms.Add(std::move(cost));
   }
   return frame;
@@ -176,7 +176,7 @@ bool LiveWindow::Solve(int iterations) {
   const SolveReport report = lag_->Solve(iterations, setup_.options.reuse_linearisation);
   iterations_ += report.iterations - 1;
   if (report.status != SolveStatus::kFailure) return true;
-  // Nothing in the window can be trusted: begin again with the next frame, from the shape and focal length so far.
+  // The states of the window are not usable: restart with the next frame, from the shape and focal length so far.
   const SequenceProblem& failed = lag_->problem();
   SequenceProblem problem = setup_.EmptyProblem();
   if (failed.betas.allFinite()) problem.betas = failed.betas;
@@ -198,8 +198,8 @@ PositionSigma LiveWindow::Uncertainty(int begin, int end) {
   lag_->VisitCovariance(begin, end, [&](int slot, const Eigen::MatrixXd& P) {
     const FrameData& frame = problem().frames[slot];
     const JointSpread spread = JointSpreadOf(setup_.layout, problem().states[slot], problem().betas, P);
-    // What has left the window holds the lifter's predictions too, so P cannot be had without them. Of 2D joints alone
-    // the lifter's own spread is nearly all of both; dense keypoints know better than it.
+    // P includes the lifter's predictions through the prior from frames that have left the window. With 2D joints alone
+    // the lifter's own covariance is nearly that of both joined; dense keypoints are more accurate than the lifter.
     const LiftedPose* lifted = frame.Get<LiftedPoseTerm>().pose;
     const bool lifter_decides = lifted != nullptr && frame.Get<DenseTerm>().size() == 0;
     sigma.joints.row(slot - begin) = (lifter_decides ? JointSigmaOf(*lifted, J) : JointSigmaOf(spread)).transpose();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The last frames of a live tracker: what came of them, what is remembered of their 2D joints, and the window that the
-/// solver has over them.
+/// The last frames of a live tracker: their observations, the history of their 2D joints, and the solver's window over
+/// them.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace bodyloom {
 
-/// A frame that has not been handed out yet or is in the window.
+/// A frame that has not been returned yet or is in the window.
 struct LiveRecord {
   int64_t index = 0;  ///< of the Push() that brought it
   double timestamp = 0;
@@ -26,8 +26,8 @@ struct LiveRecord {
   std::vector<DenseKeypoint> dense;
   std::optional<BodyPose> initialiser;
   LiftedPose lifted;
-  /// What came with 2D joints that jumped away (Continuity::kHeld), until it is known whether they come back. `seen`,
-  /// `dense` and `initialiser` are those of an empty frame so long.
+  /// Observations of a held frame (Continuity::kHeld), kept until the jump is known to be a cut or not. Until then
+  /// `seen`, `dense` and `initialiser` of the record are those of an empty frame.
   struct Held {
     std::vector<DenseKeypoint> dense;
     std::optional<BodyPose> initialiser;
@@ -43,33 +43,34 @@ class LiveWindow {
   LiveWindow(const LiveWindow&) = delete;
   LiveWindow& operator=(const LiveWindow&) = delete;
 
-  /// Takes a frame's observations (history included) as the newest record; ends the shot where it does not continue the
-  /// frames before, or where nothing has been seen for too long.
+  /// Appends a frame's observations to the records and to the history; ends the shot when the frame does not continue
+  /// the ones before, or when nothing has been seen for too long.
   LiveRecord& Append(const LiveObservations& observations);
-  /// Puts the record, the first one that is not there yet, into the solver's window.
+  /// Adds the record, which must be the first outside the solver's window, to the window.
   void Add(LiveRecord* record, const FrameState& start, bool cut);
-  /// A record of the window, of which something else is known now, becomes the next frame of the shot.
+  /// Observes a record of the window anew, with the state `start`, as the next frame of the shot.
   void Replace(LiveRecord* record, const FrameState& start, bool cut);
-  /// What the solver sees of a record.
+  /// Terms of a record for the solver.
   [[nodiscard]] FrameData Observe(const FrameState& state, LiveRecord* record) const;
-  /// False when the window had to be given up; the shot has ended then.
+  /// Returns false when the solve failed and the window was discarded; the shot has then ended.
   bool Solve(int iterations);
   void EndShot();
-  /// JointSigmaOf() in frames begin ≤ slot < end of the solver's window; NaN where they cannot be determined.
+  /// Standard deviations (JointSigmaOf()) for frames begin ≤ slot < end of the solver's window; NaN where they cannot
+  /// be determined.
   PositionSigma Uncertainty(int begin, int end);
-  /// Forgets records that nobody needs any more.
+  /// Drops records that are no longer needed.
   void DropDone();
 
   /// All records, oldest first.
   std::deque<LiveRecord>& records() { return records_; }
   [[nodiscard]] const std::deque<LiveRecord>& records() const { return records_; }
-  /// Records of the current shot that have not been handed out: the last so many.
+  /// Number of records of the current shot that have not been returned; they are the last ones.
   [[nodiscard]] int NumOpen() const;
   /// The record of a frame of the solver's window that belongs to the current shot.
   LiveRecord& RecordAt(int slot) { return records_[records_.size() - static_cast<size_t>(lag_->num_frames() - slot)]; }
-  /// The frame of the solver's window that is this record's.
+  /// Index of this record's frame in the solver's window.
   [[nodiscard]] int SlotOf(const LiveRecord& record) const;
-  /// Frames at the window's end that belong to the current shot.
+  /// Number of frames at the window's end that belong to the current shot.
   [[nodiscard]] int NumOfShotInWindow() const;
 
   FixedLag& lag() { return *lag_; }
@@ -78,7 +79,7 @@ class LiveWindow {
   /// The camera as a pinhole with the focal length as known now.
   [[nodiscard]] Camera PinholeNow() const;
 
-  bool tracking = false;  ///< a shot is under way
+  bool tracking = false;  ///< true during a shot
   [[nodiscard]] int shot_frames() const { return shot_frames_; }
   [[nodiscard]] int64_t frames_of_clip() const { return frames_of_clip_; }
   [[nodiscard]] int64_t first_index() const { return first_index_; }
@@ -86,7 +87,7 @@ class LiveWindow {
   [[nodiscard]] int64_t num_frames_left_out() const { return num_held_; }
 
  private:
-  /// The last `count` records were held and belong to a shot of their own, as far as they are still open.
+  /// Assigns the last `count` records, which were held, to the current shot, except those already returned.
   void Release(int count);
 
   const LiveSetup& setup_;

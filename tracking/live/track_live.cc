@@ -23,7 +23,7 @@ const std::vector<double>& TimesOf(const TrackSequenceInput& input) {
   return input.keypoints != nullptr ? input.keypoints->timestamps : input.dense->timestamps;
 }
 
-/// What came out of the tracker, frame by frame.
+/// Results of the tracker, collected frame by frame.
 struct Taken {
   SequenceProblem problem;
   RowMatrixXd joint_sigma;

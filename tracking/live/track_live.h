@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A whole clip through the live tracker, frame by frame, as if it came from a camera.
+/// Runs the live tracker on a whole clip, frame by frame, as if it came from a camera.
 #pragma once
 
 #include "tracking/live/live_tracker.h"
@@ -8,18 +8,18 @@
 
 namespace bodyloom {
 
-/// As TrackSequence(), from 2D joints, dense keypoints and an initialiser (part labels are left out). The track holds
-/// the poses that Push() handed out; shape and focal length are those known at the end. The summary's
-/// plan says what differs; its seconds are one stage, "live".
+/// As TrackSequence(), from 2D joints, dense keypoints and an initialiser (part labels are not used). The track holds
+/// the poses that Push() returned; shape and focal length are those known at the end. The summary's plan lists the
+/// differences; its seconds are one stage, "live".
 TrackSequenceResult TrackLive(const TrackSequenceInput& input, const LiveTrackerOptions& options);
 
-/// What TrackLive() would do with this input: no computation.
+/// The plan of TrackLive() for this input, without running it.
 std::vector<PlanEntry> PlanTrackLive(const TrackSequenceInput& input, const LiveTrackerOptions& options);
 
-/// Frame t of sequences as it would have come.
+/// Frame t of the input's sequences as observations for Push().
 LiveObservations ObservationsAt(const TrackSequenceInput& input, int t);
 
-/// What a live tracker must know beforehand.
+/// The constant input of a live tracker for this clip.
 LiveTrackerInput LiveInputFor(const TrackSequenceInput& input);
 
 }  // namespace bodyloom

@@ -52,7 +52,7 @@ bool Pose(const PersonInScene& person, const std::shared_ptr<const Skinner>& ski
   return body->surface->Render(skinner, *person.body, track.motion.betas, pose.rotations, pose.trans, track.camera);
 }
 
-/// How far away person `self` is at a pixel.
+/// Depth of person `self` at a pixel.
 double OwnDepth(const SeenBody& self, int x, int y) {
   const double depth = self.buffer().DepthAt(x, y);
   return std::isfinite(depth) ? depth : self.depth_m;
@@ -104,7 +104,7 @@ int HideLabels(const SeenBody& self, const SeenBody& other, int image_width, int
   return hidden;
 }
 
-/// What `others` hide of `self`.
+/// Down-weights or drops the observations of `self` that `others` hide, and counts them.
 HiddenCounts Hide(const SeenBody& self, const std::vector<const SeenBody*>& others, const PersonInScene& person) {
   HiddenCounts counts;
   const auto hidden_at = [&](double x, double y) {
@@ -139,7 +139,7 @@ HiddenCounts Hide(const SeenBody& self, const std::vector<const SeenBody*>& othe
   return counts;
 }
 
-/// What everybody seen at one moment hides of the others, by person.
+/// Down-weights or drops the hidden observations of everybody seen at one moment; returns counts by person.
 std::vector<std::pair<size_t, HiddenCounts>> HideInMoment(const std::vector<SeenBody>& bodies,
                                                           const std::vector<PersonInScene>& people) {
   std::vector<std::pair<size_t, HiddenCounts>> counts;
@@ -155,7 +155,7 @@ std::vector<std::pair<size_t, HiddenCounts>> HideInMoment(const std::vector<Seen
 
 }  // namespace
 
-std::vector<HiddenCounts> TakeWeightFromHidden(const std::vector<PersonInScene>& people, int num_threads) {
+std::vector<HiddenCounts> DownweightOccluded(const std::vector<PersonInScene>& people, int num_threads) {
   std::map<double, std::vector<Appearance>> by_time;
   std::vector<std::shared_ptr<const Skinner>> skinners(people.size());
   for (size_t i = 0; i < people.size(); ++i) {
@@ -173,7 +173,7 @@ std::vector<HiddenCounts> TakeWeightFromHidden(const std::vector<PersonInScene>&
     if (appearances.size() > 1) moments.push_back(std::move(appearances));
   }
   std::vector<std::vector<std::pair<size_t, HiddenCounts>>> counts(moments.size());
-  // Moments in runs: a person's shape and memory are kept from one to the next.
+  // Moments are processed in runs, within which a person's shape and memory are reused.
   const int num_runs = (int(moments.size()) + kMomentsOfRun - 1) / kMomentsOfRun;
   ParallelFor(num_runs, num_threads, [&](int run) {
     std::vector<VisibleSurface> surfaces(people.size());

@@ -15,7 +15,7 @@
 namespace bodyloom {
 namespace {
 
-/// A person's observations, copied so that weight can be taken from what others hide.
+/// A person's observations, copied so that the weight of hidden ones can be reduced.
 struct OwnObservations {
   std::optional<KeypointSequence> keypoints;
   std::optional<DenseSequence> dense;
@@ -33,14 +33,14 @@ struct OwnObservations {
             .dense = dense ? &*dense : nullptr,
             .part_labels = part_labels ? &*part_labels : nullptr};
   }
-  void GiveTo(TrackSequenceInput* input) const {
+  void CopyTo(TrackSequenceInput* input) const {
     if (keypoints) input->keypoints = &*keypoints;
     if (dense) input->dense = &*dense;
     if (part_labels) input->part_labels = &*part_labels;
   }
 };
 
-/// Fits of several people behind one progress callback. Once it has said stop, every further fit is stopped too.
+/// Fits of several people with one progress callback. Once it requests a stop, every further fit is stopped too.
 class Fits {
  public:
   Fits(const TrackSequenceOptions& options, size_t num_fits) : options_(options), num_fits_(double(num_fits)) {}
@@ -80,8 +80,8 @@ void CheckOneCamera(const std::vector<TrackSequenceInput>& people) {
   }
 }
 
-/// One scale of the path for everybody, where each fit looked for its own: their mean, weighted by 1/σ². 0: nobody
-/// found one, and all of them are told with the path's rotations alone.
+/// Common scale of the path from the scales of the separate fits: their mean, weighted by 1/σ². 0 if no fit found one;
+/// then all use the path's rotations only.
 double SharedCameraScale(const std::vector<TrackSequenceResult>& people) {
   double sum = 0, weights = 0;
   for (const TrackSequenceResult& person : people) {
@@ -169,11 +169,11 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   std::vector<PersonInScene> in_scene;
   for (size_t i = 0; i < n; ++i) in_scene.push_back(own[i].InScene(people[i].body, result.people[i]));
   const int threads = ThreadsFor(options.num_threads);
-  result.summary.hidden = TakeWeightFromHidden(in_scene, threads);
+  result.summary.hidden = DownweightOccluded(in_scene, threads);
 
   const bool shares_focal = unknown_focal && scene.focal_px > 0;
   const auto fit_again = [&](size_t i) {
-    own[i].GiveTo(&people[i]);
+    own[i].CopyTo(&people[i]);
     if (shares_focal) people[i].camera = MakePinhole(width, height, scene.focal_px);
     TrackSequenceResult again = fits.Run(people[i], shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge);
     if (!again.summary.IsUsable() || fits.stopped()) return;
@@ -181,7 +181,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
     result.summary.fitted_again[i] = 1;
   };
   if (shares_focal && NumStanding(result.people) >= 2) {
-    // Where feet are follows the focal length: they are compared after everybody has the same.
+    // The positions of feet depend on the focal length, so they are compared after everybody has the same one.
     for (size_t i = 0; i < n && !fits.stopped(); ++i) {
       if (result.people[i].summary.IsUsable()) fit_again(i);
     }

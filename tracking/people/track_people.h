@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Several people in one view, fitted as one scene: one camera with one focal length, one vertical, one ground, and
-/// nearer people in front of others.
+/// Fits several people in one view as one scene, with a common focal length, vertical and ground, and with occlusion
+/// between people.
 ///
-/// Everybody is fitted alone first. What these fits say of the scene is joined (shared_scene.h), what a nearer body
-/// hides of another is found (occlusion.h), and those for whom that changes something are fitted again with it. Where
-/// the focal length was not known and feet of two people stand, twice: with the joined focal length, which moves
-/// everybody's feet, and with the ground and the sizes that these show. Of a camera that moves the scale of the path is
-/// one for all, and sizes are not compared.
+/// Everybody is first fitted alone. The scene estimates of these fits are joined (shared_scene.h), observations hidden
+/// by nearer bodies lose weight (occlusion.h), and those for whom this changes something are fitted again. If the focal
+/// length is not known and feet of two people stand, this is done twice: with the joined focal length, which moves
+/// everybody's feet, and then with the ground and the sizes estimated from them. For a moving camera the scale of the
+/// path is common to all, and sizes are not compared.
 #pragma once
 
 #include <string>
@@ -31,10 +31,10 @@ struct TrackPeopleResult {
   TrackPeopleSummary summary;
 };
 
-/// Inputs are as for TrackSequence(), of one camera and one clip; people may be there for parts of it (frames belong
-/// together when their timestamps are equal). With weak perspective, which has no place in a common space, everybody
-/// stays alone. Progress runs over all fits; when its callback returns false, what is there by then is returned.
-/// Throws std::invalid_argument as TrackSequence(), when there is nobody, and when the image sizes differ.
+/// Inputs are as for TrackSequence(), of one camera and one clip; people may be present for parts of it (frames are
+/// simultaneous when their timestamps are equal). With weak perspective, which has no common space, everybody is fitted
+/// alone. Progress runs over all fits; when its callback returns false, the fits so far are returned. Throws
+/// std::invalid_argument as TrackSequence(), when there is nobody, and when the image sizes differ.
 TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const TrackSequenceOptions& options);
 
 }  // namespace bodyloom

@@ -70,7 +70,7 @@ class PointEvaluator {
   Eigen::Vector3d Evaluate(const Kinematics& kinematics, const int vertices[3], const double barycentric[3],
                            VertexCache* cache, bool jacobian);
 
-  /// Posed position of one vertex. Does not touch what the last Evaluate() left.
+  /// Posed position of one vertex. Does not affect the results of the last Evaluate().
   static Eigen::Vector3d VertexPosition(const Kinematics& kinematics, int v, VertexCache* cache);
 
   /// Joints that move the point, after Evaluate(…, true).

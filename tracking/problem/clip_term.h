@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A term over a clip: it puts its part into the frames' lists (frame_term.h), learns from answers, and finds anew what
-/// corresponds to what where it needs rounds. TrackSequence() makes those of term_kinds.h and calls them in the
-/// order in which they are declared here.
+/// Base of a term over a clip: it adds its frame terms to the frames' lists (frame_term.h), adapts to solutions, and
+/// updates correspondences between rounds. TrackSequence() makes those of term_kinds.h and calls the functions below in
+/// the order of their declaration.
 #pragma once
 
 #include <functional>
@@ -20,13 +20,13 @@ struct TrackSequenceInput;
 struct TrackSequenceOptions;
 struct TrackSequenceSummary;
 
-/// What terms of a clip are made from; all of it outlives them.
+/// Input for making the terms of a clip; all of it outlives them.
 struct ClipTermInput {
-  const TrackSequenceInput& input;  ///< with the observations that can be meant
+  const TrackSequenceInput& input;  ///< with cleaned observations
   const TrackSequenceOptions& options;
   const FrameLayout& layout;
   const ObservedLandmarks& landmarks;
-  const KeypointSequence* joints = nullptr;  ///< 2D joints that the lifter has read; null: none
+  const KeypointSequence* joints = nullptr;  ///< 2D joints that the lifter used; null: none
   const LiftedStart& lifted;                 ///< without frames where the lifter does not run
   const LiftedLandmarks& lifted_landmarks;
   double stature_m = 0;
@@ -40,31 +40,34 @@ class ClipTerm {
   ClipTerm(const ClipTerm&) = delete;
   ClipTerm& operator=(const ClipTerm&) = delete;
 
-  /// Puts its part into all frames of the clip's problem, which start at its states, in the camera frame of each. Terms
-  /// are summed in the order in which they come here, so a part that comes later is put in empty.
+  /// Adds its terms to all frames of the clip's problem, whose starting states are in the camera frame of each. Terms
+  /// are summed in the order in which they are added, so a term that gets its observations later is added empty.
   virtual void Observe(SequenceProblem* /*problem*/) {}
-  /// All terms are in, and the states are where they are solved: in the scene of a camera that moves.
+  /// Called after all terms have been added and the states are in the frame of the solve: for a moving camera, the
+  /// scene.
   virtual void BeginFit(SequenceProblem* /*problem*/) {}
-  /// A first answer is there: `coarse` holds `frames` of the clip. True when the term has changed in both problems, and
-  /// what was solved with it is to be solved again.
+  /// Called with a first solution: `coarse` holds `frames` of the clip. Returns true when the term has changed in both
+  /// problems, which must then be solved again.
   virtual bool LearnFrom(const std::vector<int>& /*frames*/, SequenceProblem* /*coarse*/,
                          SequenceProblem* /*problem*/) {
     return false;
   }
-  /// Solves on the coarse frames, each after a StartRound(); and one StartRound() before all frames are solved.
+  /// Rounds of the term: solves on the coarse frames, each after a StartRound(), and one StartRound() before all frames
+  /// are solved.
   struct Rounds {
     int count = 0;
     int max_iterations = 0;  ///< of a solve
     const char* stage = "";  ///< its name in summary and progress
   };
   [[nodiscard]] virtual Rounds rounds() const { return {}; }
-  /// `problem` holds `frames` of the clip; `round` counts from 0, and is the last one for all frames.
+  /// Updates the term for a round. `problem` holds `frames` of the clip; `round` counts from 0, and is the last one for
+  /// all frames.
   virtual void StartRound(int /*round*/, const std::vector<int>& /*frames*/, SequenceProblem* /*problem*/) {}
-  /// With the answer in `problem`.
+  /// Adds the term's part of the summary, with the solution in `problem`.
   virtual void Summarise(const SequenceProblem& /*problem*/, TrackSequenceSummary* /*summary*/) const {}
 };
 
-/// A term whose part of a frame is put in once: `observe(t, state, frame)` for every frame.
+/// A term that is added once to each frame, by `observe(t, state, frame)`.
 std::unique_ptr<ClipTerm> EachFrame(std::function<void(int, const FrameState&, FrameData*)> observe);
 
 }  // namespace bodyloom

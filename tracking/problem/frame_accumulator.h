@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Sums of a frame's terms: its cost and its normal equations, or its residuals one by one.
+/// Accumulates a frame's terms: its cost and its normal equations, or its residuals one by one.
 ///
-/// A term hands over groups of residual rows with their derivatives, or squares of blocks that it knows itself.
-/// Rotations are differentiated by right increments. Points that cannot be projected cost the kernel's saturation c²
-/// with a zero derivative, and are counted. What becomes of the groups is the mode's:
-///   kCost       ½ Σ w ρ(‖r‖²) alone
-///   kSums       the same, and gradient and Gauss–Newton matrix of the weighted residuals √(w ρ′) r
-///   kRows       r and its derivatives as they are, group by group, with w and ρ beside them: what Ceres takes
-///   kNorms      the same without derivatives; of each group's r its norm stands in the first row
-///   kStructure  as kRows, and on which unknowns each group may depend
+/// A term adds groups of residual rows with their derivatives, or its own sums of JᵀJ and Jᵀr. Rotations are
+/// differentiated by right increments. Points that cannot be projected cost the kernel's saturation c² with a zero
+/// derivative, and are counted. The mode determines the result:
+///   kCost       ½ Σ w ρ(‖r‖²) only
+///   kSums       the same, with gradient and Gauss–Newton matrix of the weighted residuals √(w ρ′) r
+///   kRows       unweighted r and its derivatives, group by group, with their w and ρ, as Ceres takes them
+///   kNorms      the same without derivatives; each group has the norm of its r in the first row
+///   kStructure  as kRows, with the unknowns on which each group may depend
 /// Holds scratch memory that is kept from frame to frame; one instance a thread.
 #pragma once
 
@@ -41,12 +41,12 @@ struct FrameSystem {
   int num_invalid = 0;  ///< observations that could not be projected
 };
 
-/// How far a term's observations are off in one frame, in pixels, before weights and kernels.
+/// Residuals of a term's observations in one frame, in pixels, before weights and kernels.
 struct PixelResiduals {
   std::vector<double> px;
   int unmatched = 0;
 };
-/// By what the summary calls them: "rendered UV", "silhouette", "part labels".
+/// Residuals by the term's name in the summary: "rendered UV", "silhouette", "part labels".
 using FrameResiduals = std::map<std::string, PixelResiduals>;
 
 /// Rows that share a robust kernel: ½ w ρ(‖r‖²).
@@ -55,8 +55,8 @@ struct ResidualGroup {
   double kernel = 0;  ///< c of Geman–McClure; 0: ρ(s) = s
   double weight = 1;
   ceres::LossFunction* loss = nullptr;  ///< ρ in place of the kernel; borrowed
-  /// Unknowns that the rows may depend on, whatever the state: FrameLayout::BlockOf… numbers, ascending. Filled while
-  /// structure is noted (Mode::kStructure).
+  /// Unknowns that the rows may depend on at any state: FrameLayout::BlockOf… numbers, ascending. Filled in
+  /// Mode::kStructure.
   std::vector<int> blocks;
 };
 
@@ -64,7 +64,7 @@ class FrameAccumulator {
  public:
   enum class Mode { kCost, kSums, kNorms, kRows, kStructure };
 
-  /// A surface point that was evaluated last in points(), and where it appears.
+  /// The surface point last evaluated in points(), and its projection.
   struct Projected {
     Eigen::Vector3d x;
     Eigen::Vector2d pixel;
@@ -74,12 +74,12 @@ class FrameAccumulator {
   /// Begins a frame at this state, all of which is borrowed until Finish(). `residuals` may be null.
   void Begin(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas, double log_focal,
              Mode mode, FrameResiduals* residuals);
-  /// Makes room for this many rows and forgets what was added since Begin(): before the first term in every mode but
+  /// Allocates this many rows and clears the sums. To be called after Begin(), before the first term, in every mode but
   /// kCost.
   void ReserveRows(int rows);
-  /// Terms from here on are taken in this mode, which has derivatives only when that of Begin() had.
+  /// Sets the mode for the following terms; it may have derivatives only if that of Begin() has.
   void SetMode(Mode mode) { mode_ = mode; }
-  /// The sums of all that was added since ReserveRows(); H and gradient with derivatives only.
+  /// Returns the sums of all terms added since ReserveRows(); H and gradient with derivatives only.
   void Finish(FrameSystem* system);
 
   [[nodiscard]] const FrameLayout& layout() const { return *layout_; }
@@ -88,14 +88,14 @@ class FrameAccumulator {
   [[nodiscard]] double log_focal() const { return log_focal_; }
   [[nodiscard]] const Camera& camera() const { return camera_; }
   [[nodiscard]] bool derivatives() const { return mode_ != Mode::kCost && mode_ != Mode::kNorms; }
-  /// Residuals are wanted one by one: rows are to be handed over even where they are zero now.
+  /// True if residuals are requested one by one; then rows must be added even if they are zero at this state.
   [[nodiscard]] bool one_by_one() const { return mode_ != Mode::kCost && mode_ != Mode::kSums; }
   [[nodiscard]] const Kinematics& kinematics() const { return kinematics_; }
-  /// Evaluates points of the body; what was evaluated last is what rows are added for.
+  /// Evaluates points of the body; rows are added for the point evaluated last.
   PointEvaluator& points() { return points_; }
   PointEvaluator::VertexCache& vertices() { return vertices_; }
   VisibleSurface& surface() { return surface_; }
-  /// Null where nobody wants to know.
+  /// Null if residuals are not requested.
   PixelResiduals* residuals(const char* name) { return residuals_ != nullptr ? &(*residuals_)[name] : nullptr; }
   /// Memory of one term's own, kept from frame to frame.
   template <typename T>
@@ -107,15 +107,16 @@ class FrameAccumulator {
 
   [[nodiscard]] double cost() const { return cost_; }
   void AddCost(double cost) { cost_ += cost; }
-  /// An observation of num_rows rows of the point evaluated last that could not be used costs its kernel's saturation.
+  /// Adds the kernel's saturation for an observation, of num_rows rows of the point evaluated last, that cannot be
+  /// used.
   void AddSaturated(double kernel, double weight, int num_rows = 2);
   bool Project(const Eigen::Vector3d& x, Projected* projected) {
     projected->x = x;
     return camera_.Project(x, &projected->pixel, derivatives() ? &projected->d_pixel_d_x : nullptr);
   }
 
-  /// Adds ½ w ρ(‖r‖²) of a group of rows whose squared norm is given (kernel 0: ρ(s) = s) and returns by what rows and
-  /// residuals are to be multiplied before they are handed over: √(w ρ′), or 1 where they are wanted one by one.
+  /// Adds ½ w ρ(‖r‖²) of a group of rows whose squared norm is given (kernel 0: ρ(s) = s) and returns the factor for
+  /// its rows and residuals: √(w ρ′), or 1 if they are requested one by one.
   double AddGroup(int num_rows, double squared_norm, double kernel, double weight) {
     const RobustValue robust = kernel > 0 ? GemanMcClure(squared_norm, kernel) : RobustValue{squared_norm, 1};
     cost_ += 0.5 * weight * robust.rho;
@@ -125,13 +126,13 @@ class FrameAccumulator {
     }
     return std::sqrt(weight * robust.weight);
   }
-  /// The same with a loss function, of which ρ and ρ′ are given.
+  /// The same with a loss function, whose values ρ and ρ′ are given.
   double AddGroup(int num_rows, double squared_norm, double rho, double d_rho, ceres::LossFunction* loss);
-  /// ½ w ρ(‖residual‖²) with ∂residual/∂θ = B ∂pixel/∂θ of the point evaluated last; N rows.
+  /// Adds ½ w ρ(‖residual‖²) with ∂residual/∂θ = B ∂pixel/∂θ of the point evaluated last; N rows.
   template <int N>
   void AddImageRows(const Projected& at, const Eigen::Matrix<double, N, 1>& residual,
                     const Eigen::Matrix<double, N, 2>& B, double kernel, double weight);
-  /// ½ w ρ(‖W (π(x) − pixel)‖²), x the point evaluated last.
+  /// Adds ½ w ρ(‖W (π(x) − pixel)‖²), x the point evaluated last.
   void AddPixel(const Eigen::Vector3d& x, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& whitening, double kernel,
                 double weight) {
     Projected at;
@@ -146,7 +147,7 @@ class FrameAccumulator {
   auto NextRows(int count) { return J_.middleRows(row_, count); }
   auto NextResiduals(int count) { return r_.segment(row_, count); }
   void TakeRows(int count) { row_ += count; }
-  /// 3×columns: derivative of the point evaluated last, without translation.
+  /// Fills 3×columns: the derivative of the point evaluated last, without translation.
   void FillPointRows(Eigen::Ref<RowMatrixXd> rows);
   /// Adds a group of N rows that depends on one joint (or on the translation), whose three columns begin at `column`:
   /// J and r multiplied by what AddGroup() returned. Summed as JᵀJ and Jᵀr, without rows.
@@ -164,23 +165,23 @@ class FrameAccumulator {
     DependsOn(layout_->BlockOfColumn(column));
     TakeRows(N);
   }
-  /// Upper triangle by rows; columns padded. For terms that sum themselves, in Mode::kSums.
+  /// Upper triangle, row-major; columns padded. For terms that add their own sums, in Mode::kSums.
   RowMatrixXd& H() { return H_; }
   Eigen::VectorXd& gradient() { return gradient_; }
 
-  /// Says, of the group begun last, on which unknowns it may depend: one of FrameLayout's blocks, or the joints that
-  /// move the point evaluated last and the shape. FillPointRows(), AddImageRows() and AddBlockRows() say it themselves.
+  /// Records unknowns on which the group begun last may depend: one of FrameLayout's blocks, or the joints that move
+  /// the point evaluated last and the shape. FillPointRows(), AddImageRows() and AddBlockRows() call these themselves.
   void DependsOn(int block);
   void DependsOnPoint();
 
-  /// Of the groups handed over since ReserveRows(), in the modes in which they are wanted one by one.
+  /// Groups added since ReserveRows(), in the modes for residuals one by one, with their rows and residuals.
   [[nodiscard]] const std::vector<ResidualGroup>& groups() const { return groups_; }
   [[nodiscard]] const RowMatrixXd& rows() const { return J_; }
   [[nodiscard]] const Eigen::VectorXd& residual_values() const { return r_; }
   [[nodiscard]] int num_rows() const { return row_; }
 
-  /// At most about this many of a term's thousands of observations in a frame, evenly chosen and weighted to stand for
-  /// all; 0: all.
+  /// Approximate maximum number of observations used of a term with thousands in a frame, evenly chosen and weighted to
+  /// represent all; 0: all.
   int max_points = 0;
 
  private:

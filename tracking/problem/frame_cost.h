@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The cost of one frame: everything that depends on one frame's pose and on the clip's shape and focal length. It is
-/// the sum over the terms of the frame's list (frame_cost.h), each of which has its law in its own header; the built-in
-/// ones are those of term_kinds.h.
+/// the sum over the terms of the frame's list (TermList), each of which is explained in its own header; the built-in
+/// ones are listed in term_kinds.h.
 ///
-/// Where the camera moves, the state is in the scene and every term takes it in the camera frame of its frame; the sums
-/// are taken back to the scene at the end (moving_camera.h).
+/// For a moving camera the state is in the scene. It is transformed to the camera frame for the terms, and their sums
+/// are transformed back to the scene (moving_camera.h).
 ///
 /// Rotations are differentiated by right increments. Points that cannot be projected cost the kernel's saturation c²
 /// with a zero derivative, and are counted.
@@ -20,11 +20,10 @@
 
 namespace bodyloom {
 
-// The terms of one frame, and its camera where that moves. Borrowed pointers outlive the cost.
-
+/// The terms of one frame, and its camera pose if the camera moves. Borrowed pointers outlive the cost.
 struct FrameData {
-  /// Of a camera that moves: a frame's state is in the scene, and its terms speak of this camera's frame
-  /// (moving_camera.h). Null: the camera stands still.
+  /// Pose of a moving camera: the frame's state is in the scene, and its terms are in this camera's frame
+  /// (moving_camera.h). Null: the camera is static.
   const CameraPose* camera_from_scene = nullptr;
   TermList terms;
 
@@ -39,8 +38,8 @@ struct FrameData {
   }
 };
 
-/// A frame's residuals one by one: the groups of rows of its terms, in the order of the list. What a term compresses
-/// (FrameTerm::is_compressed) comes as one group of CompressedRows().
+/// A frame's residuals one by one: the groups of rows of its terms, in the order of the list. A compressed term
+/// (FrameTerm::is_compressed) is one group of CompressedRows().
 struct FrameRows {
   RowMatrixXd J;  ///< by the columns of the layout
   Eigen::VectorXd r;
@@ -49,27 +48,27 @@ struct FrameRows {
   bool is_finite = false;
 };
 
-/// p + 2 rows that stand for a cost with these normal equations, p its columns: R δ + y with RᵀR = H and y = R⁻ᵀ g; one
-/// that carries what R leaves out of g where H is not positive definite to rounding; and √(what is missing from cost),
-/// with a zero derivative, which also holds the part of robust kernels that weighted residuals do not show. Cost,
-/// gradient and Gauss–Newton step are those of the system. Without derivatives everything is in the last row. J and r:
-/// p + 2 rows.
+/// Fills p + 2 rows J and r equivalent to a cost with these normal equations, p its columns: R δ + y with RᵀR = H and
+/// y = R⁻ᵀ g; one row for the part of g outside the range of Rᵀ, where H is not positive definite to rounding; and the
+/// square root of the remaining cost, with a zero derivative, which includes the part of robust kernels that is not in
+/// the weighted residuals. Cost, gradient and Gauss–Newton step are those of the system. Without derivatives everything
+/// is in the last row.
 void CompressedRows(const FrameSystem& system, bool derivatives, Eigen::Ref<RowMatrixXd> J,
                     Eigen::Ref<Eigen::VectorXd> r);
 
 /// Evaluates frames; holds scratch memory, one instance a thread.
 class FrameEvaluator {
  public:
-  /// From now on at most about this many observations of a term of thousands in a frame, evenly chosen and weighted to
-  /// stand for all of them; 0: all. Frames with rendered UV always use all.
+  /// Limits the observations used of a term with thousands in a frame to about this many, evenly chosen and weighted to
+  /// represent all; 0: all. Frames with rendered UV always use all.
   void LimitPoints(int max_points) { sums_.max_points = max_points; }
-  /// Cost only when `derivatives` is false. `residuals` is filled when given (appended to), `term_costs` with the cost
-  /// of each term of the list.
+  /// Evaluates the sums; only the cost when `derivatives` is false. If given, `residuals` is appended to and
+  /// `term_costs` is filled with the cost of each term of the list.
   void Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state, const Eigen::VectorXd& betas,
                 double log_focal, bool derivatives, FrameSystem* system, FrameResiduals* residuals = nullptr,
                 std::vector<double>* term_costs = nullptr);
-  /// The residuals one by one. `mode`: kNorms, kRows, or kStructure, which fills ResidualGroup::blocks. How many groups
-  /// there are and what their structure is does not depend on the state.
+  /// Evaluates the residuals one by one. `mode`: kNorms, kRows, or kStructure, which fills ResidualGroup::blocks.
+  /// Number and structure of the groups do not depend on the state.
   void EvaluateRows(const FrameLayout& layout, const FrameData& data, const FrameState& state,
                     const Eigen::VectorXd& betas, double log_focal, FrameAccumulator::Mode mode, FrameRows* rows);
 
@@ -84,8 +83,8 @@ class FrameEvaluator {
   FrameSystem system_;
 };
 
-/// Upper triangular R with RᵀR = H (lower triangle of H is read) and y with Rᵀy = g, for positive semi-definite H with
-/// g in its range; pivots below 1e-14 of the largest diagonal give zero rows.
+/// Computes upper triangular R with RᵀR = H (lower triangle of H is read) and y with Rᵀy = g, for positive
+/// semi-definite H with g in its range; pivots below 1e-14 of the largest diagonal give zero rows.
 void SquareRootSystem(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, Eigen::MatrixXd* R, Eigen::VectorXd* y);
 
 }  // namespace bodyloom

@@ -61,6 +61,13 @@ Vector3d FrameLayout::BodyPlace(const FrameState& state) const {
   return {state.translation[1], state.translation[2], camera.fx * std::exp(-state.translation[0])};
 }
 
+Eigen::Matrix3d FrameLayout::BodyPlaceByTranslation(const FrameState& state) const {
+  if (knowledge != CameraKnowledge::kWeak) return Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d derivative;
+  derivative << -BodyPlace(state).z() * Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY();
+  return derivative;
+}
+
 FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s) {
   FrameState result;
   result.rotations.reserve(a.rotations.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The unknowns of a frame: its pose and place, and in which columns of its normal equations they stand.
+/// The unknowns of a frame, its pose and position, and their columns in its normal equations.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ struct FrameState {
 
 bool IsFinite(const FrameState& state);
 
-/// Which unknowns a frame has and in which column of its Jacobian they stand; shared by all frames of a clip.
+/// The unknowns of a frame and their columns in its Jacobian; shared by all frames of a clip.
 struct FrameLayout {
   const BodyModel* model = nullptr;
   CameraKnowledge knowledge = CameraKnowledge::kKnown;
@@ -40,7 +40,7 @@ struct FrameLayout {
   [[nodiscard]] int TranslationBlock() const { return translation_column / 3; }
   [[nodiscard]] int BetaBlock() const { return num_betas > 0 ? TranslationBlock() + 1 : -1; }  ///< −1: not estimated
   [[nodiscard]] int FocalBlock() const { return focal_column >= 0 ? num_blocks() - 1 : -1; }   ///< −1: not estimated
-  /// Of a column of a joint or of the translation.
+  /// Block of a column of a joint or of the translation.
   [[nodiscard]] static int BlockOfColumn(int column) { return column / 3; }
   [[nodiscard]] int FirstColumn(int block) const {
     return block <= TranslationBlock() ? 3 * block : block == BetaBlock() ? beta_column : focal_column;
@@ -50,17 +50,19 @@ struct FrameLayout {
   }
   /// Intrinsics at a frame's state; for weak perspective with its scale and offset.
   [[nodiscard]] Camera CameraAt(const FrameState& state, double log_focal) const;
-  /// Translation of the body: zero for weak perspective, where the camera has it.
+  /// Translation of the body: zero for weak perspective, where it is in the camera.
   [[nodiscard]] Eigen::Vector3d BodyTranslation(const FrameState& state) const;
-  /// Where the body's origin is in the camera frame, metres. For weak perspective: (tx, ty, fx/s), as far away as a
-  /// pinhole of the layout's focal length would have to be.
+  /// Position of the body's origin in the camera frame, metres. For weak perspective: (tx, ty, fx/s), at the distance
+  /// for a pinhole of the layout's focal length.
   [[nodiscard]] Eigen::Vector3d BodyPlace(const FrameState& state) const;
+  /// ∂BodyPlace/∂(the translation's three columns): the identity except for weak perspective.
+  [[nodiscard]] Eigen::Matrix3d BodyPlaceByTranslation(const FrameState& state) const;
 };
 
-/// From a (s = 0) to b (s = 1): rotations along geodesics, translation linearly.
+/// Interpolates from a (s = 0) to b (s = 1): rotations along geodesics, translation linearly.
 FrameState InterpolateStates(const FrameState& a, const FrameState& b, double s);
 
-/// Image height of an upright body of this stature at a frame's depth, pixels: the yardstick of detection noise.
+/// Image height of an upright body of this stature at a frame's depth, pixels: the scale of detection noise.
 double UprightHeightPx(const FrameLayout& layout, const FrameState& state, double stature_m);
 
 }  // namespace bodyloom

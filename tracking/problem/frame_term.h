@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A term of a frame's cost, built in or a user's: one kind of thing, held in one list.
+/// Interface of the terms of a frame's cost, built-in and users', and the list that holds them.
 ///
-/// A term holds what it knows of one frame and adds ½ Σ w ρ(‖r‖²) of its residuals, with their derivatives, to the sums
-/// of the frame (frame_accumulator.h). Engines, plan and reports know terms by this interface alone; the law of each
-/// stands in its own header.
+/// A term holds its observations of one frame and adds ½ Σ w ρ(‖r‖²) of its residuals, with their derivatives, to the
+/// sums of the frame (frame_accumulator.h). Engines, plan and reports use terms by this interface only; the formula of
+/// each is in its own header.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace bodyloom {
 
 class FrameAccumulator;
 
-/// What a stage of the solve sets (track_stages.h).
+/// Settings of a stage of the solve (track_stages.h).
 struct StageSettings {
   double initialiser_weight = 0;  ///< λ_d of terms/initialiser.h
   double landmark_kernel = 4;     ///< c of terms/landmarks.h, in σ
@@ -24,16 +24,16 @@ struct StageSettings {
 class FrameTerm {
  public:
   virtual ~FrameTerm() = default;
-  /// As it stands in the table of costs: "2D joints".
+  /// Name in the table of costs, as "2D joints".
   [[nodiscard]] virtual std::string name() const = 0;
-  /// How many rows of the Jacobian Add() fills at most; what it adds to the sums directly does not count.
+  /// Maximum number of rows of the Jacobian that Add() fills, without those that it adds to the sums directly.
   [[nodiscard]] virtual int num_rows() const { return 0; }
-  /// It holds nothing of this frame: there is nothing to add, whatever the state.
+  /// True if the term has no observations of this frame and so adds nothing at any state.
   [[nodiscard]] virtual bool is_empty() const { return num_rows() == 0; }
-  /// True: an engine that takes residuals one by one (Ceres) gets those of this frame compressed into a square-root
-  /// system, because they are thousands, or because what they depend on changes with the state.
+  /// True if an engine that takes residuals one by one (Ceres) gets those of this frame compressed into a square-root
+  /// system, because there are thousands, or because the unknowns that they depend on change with the state.
   [[nodiscard]] virtual bool is_compressed() const { return false; }
-  /// Adds the term's cost and, where the sums are taken with derivatives, its rows. Called from several threads.
+  /// Adds the term's cost and, if derivatives are requested, its rows. Called from several threads.
   virtual void Add(FrameAccumulator* sums) const = 0;
   virtual void BeginStage(const StageSettings& /*settings*/) {}
   [[nodiscard]] virtual std::unique_ptr<FrameTerm> Clone() const = 0;
@@ -68,7 +68,7 @@ class TermList {
   TermList& operator=(TermList&&) = default;
 
   void Add(std::unique_ptr<FrameTerm> term) { terms_.push_back(std::move(term)); }
-  /// The first term of this class; null: there is none.
+  /// The first term of this class; null if there is none.
   template <typename Term>
   [[nodiscard]] Term* Find() {
     for (const auto& term : terms_) {
@@ -80,14 +80,14 @@ class TermList {
   [[nodiscard]] const Term* Find() const {
     return const_cast<TermList*>(this)->Find<Term>();
   }
-  /// The first term of this class, which is added at the end where there is none.
+  /// The first term of this class; a new one is added at the end if there is none.
   template <typename Term>
   Term& Get() {
     if (Term* found = Find<Term>(); found != nullptr) return *found;
     Add(std::make_unique<Term>());
     return static_cast<Term&>(*terms_.back());
   }
-  /// The first term of this class, or one that holds nothing where there is none.
+  /// The first term of this class, or an empty one if there is none.
   template <typename Term>
   [[nodiscard]] const Term& Get() const {
     static const Term kNothing;

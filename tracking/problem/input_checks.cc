@@ -14,7 +14,7 @@ namespace bodyloom {
 namespace {
 
 constexpr double kMinBody_m = 0.3, kMaxBody_m = 10, kMaxDistance_m = 1000;
-constexpr double kLeastSize = 0.4, kMostSize = 1.6;  // of the mean body
+constexpr double kMinSize = 0.4, kMaxSize = 1.6;  // of the mean body
 constexpr float kMinDenseSigma_px = 0.01F;
 
 /// Farthest coordinate that a detection may have, pixels.
@@ -67,9 +67,10 @@ void CheckBody(const BodyModel& body) {
 void CheckStature(const TrackSequenceInput& input) {
   TrackSequenceInput mean = input;
   mean.stature_m = 0;
-  const double least = kLeastSize * AssumedStature(mean), most = kMostSize * AssumedStature(mean);
-  BODYLOOM_CHECK(input.stature_m >= least && input.stature_m <= most, "track: the person's stature is ",
-                 input.stature_m, ", expected metres, for the body '", input.body->name(), "' ", least, " to ", most);
+  const double minimum = kMinSize * AssumedStature(mean), maximum = kMaxSize * AssumedStature(mean);
+  BODYLOOM_CHECK(input.stature_m >= minimum && input.stature_m <= maximum, "track: the person's stature is ",
+                 input.stature_m, ", expected metres, for the body '", input.body->name(), "' ", minimum, " to ",
+                 maximum);
 }
 
 void CheckInitialiser(const Motion& start) {

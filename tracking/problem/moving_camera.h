@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A camera that moves, as one change of variables: a frame's state is in the scene, its terms are in the camera frame.
+/// Moving cameras by a change of variables: a frame's state is in the scene, its terms are in the camera frame.
 ///
-/// With R, t the frame's camera_from_scene and J0(β) the pelvis at rest, the body that the camera sees has
+/// With R, t the frame's camera_from_scene and J0(β) the pelvis at rest, the body in the camera frame has
 ///   R_root' = R R_root,   trans' = R (J0 + trans) + t − J0,
-/// and everything else as it is. Right increments of the root are the same in both, so of all columns those of the
-/// translation and of the shape alone change: d trans' = R d trans + (R − I) (∂J0/∂β) dβ = R d trans + K dβ. A frame's
-/// terms are summed in the camera frame and taken to the scene once, however many they are:
-///   g ← Tᵀ g,   H ← Tᵀ H T,   T the identity but for R and K in the three rows of the translation.
-/// So no term knows that the camera moves, accelerations and velocities between frames are those of the scene, and a
-/// clip of a camera that stands still pays nothing. Not for weak perspective, which has no place in a scene.
+/// and is otherwise the same. Right increments of the root are the same in both frames, so only the columns of the
+/// translation and of the shape change: d trans' = R d trans + (R − I) (∂J0/∂β) dβ = R d trans + K dβ. A frame's terms
+/// are summed in the camera frame, and the sums are transformed to the scene once:
+///   g ← Tᵀ g,   H ← Tᵀ H T,   T the identity except for R and K in the three rows of the translation.
+/// So terms do not depend on the camera's motion, accelerations and velocities between frames are those of the scene,
+/// and static cameras have no overhead. Not for weak perspective, which has no position in a scene.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,17 +20,17 @@
 
 namespace bodyloom {
 
-/// The state in the frame of the camera, or back from it (scene_from_camera = Inverse(camera_from_scene)).
+/// Transforms the state to the frame of the camera, or back with the inverse pose (Inverse(camera_from_scene)).
 FrameState StateInCamera(const FrameLayout& layout, const CameraPose& camera_from_scene, const Eigen::VectorXd& betas,
                          FrameState state);
 
-/// The state of frame t as its camera has it: the frame's own state where the camera stands still.
+/// The state of frame t in the frame of its camera: the frame's own state if the camera is static.
 FrameState StateInCamera(const SequenceProblem& problem, size_t t);
 
-/// The sums of a frame's terms, which are by the camera frame's columns, by the scene's.
+/// Transforms the sums of a frame's terms from the camera frame's columns to the scene's.
 void TakeToScene(const FrameLayout& layout, const CameraPose& camera_from_scene, FrameSystem* system);
 
-/// Rows of derivatives by the camera frame's columns, likewise: J T.
+/// Transforms rows of derivatives likewise: J T.
 void TakeRowsToScene(const FrameLayout& layout, const CameraPose& camera_from_scene, Eigen::Ref<RowMatrixXd> J);
 
 }  // namespace bodyloom

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Dense kernels of the chain solver: plain arrays of double, row-major, no Eigen in here, because they are compiled
-/// once per instruction set and the best one is chosen at run time (as geometry/body/skinning_simd.h).
+/// Dense kernels of the chain solver on row-major arrays of double, without Eigen, because they are compiled once per
+/// instruction set and the best one is selected at run time (as geometry/body/skinning_simd.h).
 ///
-/// All widths are multiples of kPanelStep and all padding holds zeros (or anything finite where nobody reads).
+/// All widths are multiples of kPanelStep and all padding holds zeros (or any finite values where it is not read).
 #pragma once
 
 #include <cstdint>
@@ -38,13 +38,14 @@ void AddProducts(const Products& products);
 /// Eliminates the `pivots` leading columns of a symmetric front whose rows 0…pivots−1 are given:
 ///   [A | X | Z] with A pivots×pivots (upper triangle read) → [U | U⁻ᵀX | U⁻ᵀZ], UᵀU = A.
 /// A takes RoundUp(pivots) columns, X x_columns (a multiple of kPanelStep), and Z RoundUp(pivots) more when has_lower:
-/// Z is lower triangular in blocks of three, and so is what becomes of it. False when A is not positive definite.
+/// Z and U⁻ᵀZ are lower triangular in blocks of three. Returns false when A is not positive definite.
 bool EliminateRows(double* panel, int64_t stride, int pivots, int x_columns, bool has_lower);
 
 /// Σ a_i b_i.
 double Dot(const double* a, const double* b, int n);
 
-/// The instruction sets of this build that this machine has, best first; for tests: use only this one, 0 ends that.
+/// Instruction sets of this build that this machine supports, best first. For tests: ForceSimdTarget() restricts the
+/// kernels to one of them; 0 ends the restriction.
 std::vector<int64_t> SimdTargets();
 std::string SimdTargetName(int64_t target);
 void ForceSimdTarget(int64_t target);

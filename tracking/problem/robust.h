@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The robust kernel of every image observation: Geman–McClure, ρ(s) = c² s / (c² + s) for s = squared whitened
-/// residual. Quadratic near zero, saturates at c², so that an outlier, or a point that cannot be projected, costs a
-/// bounded amount. Source: Geman & McClure 1987; the form of SMPLify (Bogo et al. 2016).
+/// residual. Quadratic near zero, saturates at c², so that the cost of an outlier, or of a point that cannot be
+/// projected, is bounded. Source: Geman & McClure 1987; the form of SMPLify (Bogo et al. 2016).
 #pragma once
 
 namespace bodyloom {

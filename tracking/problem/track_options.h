@@ -30,10 +30,10 @@ SequenceSolver SequenceSolverFromString(const std::string& word);
 enum class SolveStatus { kFailure, kConverged, kMaxIterations, kStopped };
 std::string ToString(SolveStatus status);
 
-/// Of the chain engine, what it may leave out on its way; Ceres does not read it.
+/// Approximations that the chain engine may use during the descent; Ceres ignores them.
 struct ChainOptions {
   /// Until the cost changes by less than a thousandth, frames with more than twice as many dense keypoints use about
-  /// this many, evenly chosen and weighted to represent all; then all of them. What converges is always the whole
+  /// this many, evenly chosen and weighted to represent all; then all of them. Convergence is always that of the whole
   /// problem. 0: all from the beginning.
   int early_dense = 0;
   /// Frames whose residuals have moved by less than this share of their size since they were linearised last are not
@@ -41,12 +41,12 @@ struct ChainOptions {
   /// converged all frames are evaluated at the same point and iterations without reuse follow, so the answer is a
   /// minimum of the cost itself. 0: every frame in every iteration.
   double reuse_linearisation = 0;
-  /// Frames of little predicted decrease are frozen, and shape and focal length with them, while the others go on
+  /// Frames of small predicted decrease are frozen, and shape and focal length with them, while the others continue
   /// (tracking/solvers/chain_solver.h): at most this share of a step's predicted decrease at a time. Only a step of all
-  /// frames may end the descent as converged. Steps of a part of the frames count for max_iterations by its size, a
-  /// quarter at least. 0: all frames move in every iteration.
+  /// frames may end the descent as converged. A step of a part of the frames counts as that share of an iteration, at
+  /// least a quarter. 0: all frames move in every iteration.
   double frozen_share = 0;
-  /// Also when max_iterations end the descent: the final cost may be that of reused linearisations.
+  /// Reuses linearisations even when max_iterations end the descent; the final cost may be that of reused ones.
   bool reuse_to_the_end = false;
 };
 
@@ -58,18 +58,18 @@ struct SolveOptions {
   double gradient_tolerance = 1e-9;   ///< … when no component of the gradient is larger
   double parameter_tolerance = 1e-9;  ///< … when the step is below this share of the unknowns' norm
   bool shape_constant = false, focal_constant = false;
-  /// Ceres: a clip of more frames is solved in windows of so many that overlap, with shape and focal length held; 0:
-  /// never. Not where users' terms couple frames.
+  /// Ceres: a clip of more frames is solved in overlapping windows of this length, with shape and focal length held; 0:
+  /// never. Not if users' terms couple frames.
   int max_frames_at_once = 0;
   ChainOptions chain;
   /// Called after each iteration with (iteration, cost); false stops.
   std::function<bool(int, double)> on_iteration;
 };
 
-/// What the tracker sets these to; linearisations are reused only where there are dense keypoints.
+/// The tracker's values of these options; linearisations are reused only with dense keypoints.
 inline constexpr int kTrackerEarlyDense = 300;
 inline constexpr double kTrackerReuse = 0.01, kTrackerFrozenShare = 0.05;
-/// Of the last solve: Ceres takes 30 KB and more a frame at once (docs/lab/ceres_finish.md).
+/// The tracker's value for the last solve: Ceres uses 30 KB and more for each frame (docs/lab/ceres_finish.md).
 inline constexpr int kTrackerFramesAtOnce = 3000;
 
 struct SolveReport {
@@ -84,25 +84,25 @@ struct SolveReport {
 
 // Options of the vertical and of the ground.
 
-/// A vertical, and a ground, that is known before a clip is fitted: from a calibration, or from somebody else in the
+/// A vertical and a ground that are known before a clip is fitted: from a calibration, or from somebody else in the
 /// same view (tracking/people).
 struct KnownGround {
   Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< camera axes, unit
   bool has_plane = false;
   double camera_height_m = 0;  ///< of the camera above the plane
-  /// Standard deviations of both (geometry/scene/world_frame.h); NaN: whoever gives them does not say.
+  /// Standard deviations of both (geometry/scene/world_frame.h); NaN: not given.
   double up_sigma_deg = std::numeric_limits<double>::quiet_NaN();
   double height_sigma_m = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Which way is up, and the ground that feet stand on, read off the clip (initialise/ground_plane.h). Needs the lifter.
+/// Estimation of the vertical and of the ground from the clip (initialise/ground_plane.h). Needs the lifter.
 struct GroundOptions {
   /// The trunk's lean is measured against the clip's own vertical; false: against the image plane, as if every camera
   /// were level.
   bool use_up = true;
-  double contact_weight = 1;     ///< of feet that stand, on the ground that was found; 0: no ground is looked for
+  double contact_weight = 1;     ///< of standing feet on the estimated ground; 0: no ground is estimated
   double sigma_height_m = 0.03;  ///< of a standing ankle's height
-  double sigma_slide_m = 0.03;   ///< of its place on the ground while the foot stands
+  double sigma_slide_m = 0.03;   ///< of its position on the ground while the foot stands
   /// Neither the vertical nor the ground.
   static GroundOptions Off() {
     GroundOptions options;
@@ -123,13 +123,13 @@ struct PartLabelOptions {
   /// sigma_share, for masks of bare bodies. Found on synthetic dressed people (docs/lab/pose_detector.md).
   double clothes_sigma_share = 0.03;
   double start_kernel = 16, kernel = 4;  ///< c of the robust kernel in σ, in the first and in the last round
-  int rounds = 5;          ///< solves on the coarse frames; what corresponds to what is found again before each
-  int max_iterations = 8;  ///< solver iterations of a round
+  int rounds = 5;                        ///< solves on the coarse frames; correspondences are updated before each
+  int max_iterations = 8;                ///< solver iterations of a round
 
-  /// For clips whose 2D joints were read off the labels themselves: they add nothing to the labels but a start, and the
-  /// labels are all there is against the priors. Weights 10 and 30, found on the first half of the real clip of
-  /// docs/benchmarks.md (1, 3, 10, 30, 100 tried) and confirmed on its second half. Beside a detector's joints they
-  /// are too much: shoulders and hips follow the clothes.
+  /// For clips whose 2D joints were derived from the labels: these joints only give a start, and the labels are the
+  /// only observations besides the priors. Weights 10 and 30, found on the first half of the real clip of
+  /// docs/benchmarks.md (1, 3, 10, 30, 100 tried) and confirmed on its second half. With a detector's joints they are
+  /// too large: shoulders and hips follow the clothes.
   static PartLabelOptions LabelsAlone() {
     PartLabelOptions options;
     options.silhouette_weight = 10;
@@ -140,37 +140,37 @@ struct PartLabelOptions {
 
 // Options of the rendered-UV term.
 
-/// L_r of paper A: where a dense keypoint's pixel sees the chart that the detector named, its residual is taken in UV
+/// L_r of paper A: where a dense keypoint's pixel shows the chart that the detector predicts, its residual is in UV
 /// (rendered_uv_term.h) instead of in the image.
 struct RenderedUvOptions {
   double weight = 1;  ///< λ_r; 0: off
-  /// Run only when the keypoints' noise is known to lie on the surface (DenseSequence::uv_sigma). Where it lies in the
-  /// pixels instead, reprojection is the better residual (docs/benchmarks.md).
+  /// Runs only when the keypoints' noise is known to be on the surface (DenseSequence::uv_sigma). For noise of the
+  /// pixels, reprojection is the better residual (docs/benchmarks.md).
   bool only_with_uv_noise = true;
-  int max_points = 1000;    ///< keypoints of a frame that are taken in UV, spread evenly over the parts
+  int max_points = 1000;    ///< keypoints of a frame with residuals in UV, spread evenly over the parts
   int rounds = 1;           ///< solves on the coarse frames; whitening is refreshed before each
   int max_iterations = 8;   ///< solver iterations of a round
   double min_cosine = 0.5;  ///< between the ray and the surface normal; more grazing pixels are left to reprojection
-  /// What an unmatched pixel costs: true: its reprojection error, so that it still pulls; false: the kernel's
+  /// Cost of an unmatched pixel: true: its reprojection error, which still has a gradient; false: the kernel's
   /// saturation.
   bool unmatched_reproject = true;
 };
 
-/// Progress of the solve, for a progress bar. Return false from the callback to stop early with what there is.
+/// Progress of the solve, for a progress bar. Return false from the callback to stop early with the current result.
 struct TrackProgress {
   std::string stage;    ///< "initialise", "fit", "refine", …
   double fraction = 0;  ///< of the whole run, estimated, in [0, 1]
   double cost = 0;      ///< of the current stage
 };
 
-/// Of the joints' hypotheses without a start (tracking/initialise/joint_hypotheses.h).
+/// Options of the joint hypotheses without a start (tracking/initialise/joint_hypotheses.h).
 struct JointHypothesesOptions {
-  double confidence = 0.2;      ///< joints below are not used as positions
-  bool hidden_pairs = false;    ///< a shoulder or hip that is not seen is where the other one is: a view from the side
-  double frame_rate = 15;       ///< the trellis runs on about this many frames a second
-  double angular_speed = 4.0;   ///< rad/s, σ of the torso's turning
-  double limb_speed = 2.2;      ///< m/s, σ of a limb's joints relative to the torso
-  double density_weight = 0.6;  ///< of the learned limb density
+  double confidence = 0.2;        ///< joints below are not used as positions
+  bool hidden_pairs = false;      ///< in side views, an unseen shoulder or hip is placed at the other one
+  double frame_rate = 15;         ///< the trellis runs on about this many frames a second
+  double angular_speed = 4.0;     ///< rad/s, σ of the torso's turning
+  double limb_speed = 2.2;        ///< m/s, σ of a limb's joints relative to the torso
+  double density_weight = 0.6;    ///< of the learned limb density
   double occlusion_weight = 0.5;  ///< of confidence as a depth cue
   double face_weight = 1.0;       ///< of the face's visibility as a heading cue
   double upright_weight = 1.0;    ///< of the trunk being upright in a level camera
@@ -190,10 +190,11 @@ struct TrackSequenceOptions {
   double prior_weight = 0.2;    ///< of the pose prior's energy, per frame
   double start_pull = 1.0;      ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
   double upright_weight = 1.0;  ///< of the trunk not leaning out of the image plane, per frame
-  /// Of knees being straight, 1/rad (terms/straight_knees.h); 0: off. For detectors whose hips lie low on the body, as
+  /// Weight of straight knees, 1/rad (terms/straight_knees.h); 0: off. For detectors whose hips lie low on the body, as
   /// BlazePose's do.
   double straight_knees_weight = 0;
-  /// λ_t of paper A, of velocities beside accelerations, 1/(m/s)² (residuals/velocity_cost.h); 0: off. It damps motion.
+  /// λ_t of paper A, of velocities beside accelerations, 1/(m/s)² (residuals/acceleration_cost.h); 0: off. It damps
+  /// motion.
   double velocity_weight = 0;
   double coarse_rate = 15;          ///< frames a second of the coarse stages
   double shape_prior_weight = 0.3;  ///< of the shape prior, a frame
@@ -207,9 +208,9 @@ struct TrackSequenceOptions {
   /// False: solve also for joints that no landmark moves, and let `chain` use all dense keypoints from the first
   /// iteration on (nearly the same answer).
   bool skip_unneeded = true;
-  /// The relative change of the cost at which every stage ends; 0: each stage's own (track_stages.h).
+  /// Relative change of the cost at which every stage ends; 0: each stage's own (track_stages.h).
   double function_tolerance = 0;
-  std::vector<UserTerm> user_terms;  ///< terms/user/user_term.h; both engines run them
+  std::vector<UserTerm> user_terms;  ///< problem/user_term.h; both engines run them
   std::function<bool(const TrackProgress&)> progress;
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The summary of TrackSequence(): what ran and why, how well it fits, how long it took.
+/// Summary of TrackSequence(): the plan with reasons, the errors of the fit, and the times.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +23,7 @@ struct PlanEntry {
   std::string why;
 };
 
-/// How well one term fits at the end, over all frames.
+/// Final errors of one term, over all frames.
 struct TermSummary {
   std::string term;                  ///< "2D joints", "dense keypoints", "rendered UV", "silhouette", "part labels"
   int observations = 0;              ///< with a weight
@@ -31,66 +31,66 @@ struct TermSummary {
   double median_px = 0, p95_px = 0;  ///< of |residual|, in pixels
 };
 
-/// Where Ceres ended, the last engine of a track unless it is told otherwise.
+/// Final state of Ceres, which by default is the last engine of a track.
 struct CeresSummary {
   bool ran = false;
   int iterations = 0;
-  double initial_cost = 0, final_cost = 0;  ///< initial: where chain has brought it
+  double initial_cost = 0, final_cost = 0;  ///< initial: after chain
   double gradient_max_norm = 0;             ///< the largest component of the gradient at the end
   double seconds = 0;
 };
 
-/// What a term costs at the answer, ½ Σ ρ of its residuals.
+/// Cost of a term at the solution, ½ Σ ρ of its residuals.
 struct TermCost {
   std::string term;  ///< as FrameTerm::name(), or "smoothness", "shape prior", …
   double cost = 0;
 };
 
-/// The second of the clip that fits worst.
+/// The second of the clip with the worst fit.
 struct WorstStretch {
   int begin = 0, end = 0;         ///< frames
   double begin_s = 0, end_s = 0;  ///< times of the first and the last of them
   double cost_ratio = 0;          ///< its cost a frame over that of the whole clip
-  std::string term;               ///< whose cost there is most above what it is in the whole clip: the one that pulls
+  std::string term;               ///< the term whose cost there exceeds its mean over the clip by the largest amount
   double term_share = 0;          ///< of the cost there
   /// "3.2 to 4.2 s, at 2.4 times the mean cost: lifter pulls (38 % of it)"
   [[nodiscard]] std::string BriefReport() const;
 };
 
-/// A foot that stands where it is over the frames [begin, end).
+/// A foot that stands still over the frames [begin, end).
 struct StandingFoot {
   int foot = 0, begin = 0, end = 0;  ///< foot 0: left
   double seconds = 0;
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  ///< on the floor under its ankle, mean of its frames; camera axes
 };
 
-/// What the clip showed of the vertical and the ground.
+/// Estimates of the vertical and the ground.
 struct GroundSummary {
   bool has_up = false;
   Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< world up in the camera frame, mean over the clip
   double up_spread_deg = 0;                        ///< median angle of the frames' own up to it
   bool has_plane = false;
-  std::string why;             ///< what was found, or why there is no ground
+  std::string why;             ///< the evidence, or the reason why there is no ground
   double camera_height_m = 0;  ///< of the camera above the ground
   double height_spread_m = 0;  ///< robust σ of standing feet's heights before the ground held them
-  bool given = false;          ///< TrackSequenceInput::ground said it
+  bool given = false;          ///< true if it is TrackSequenceInput::ground
   /// Standard deviations of the vertical and of the camera's height (geometry/scene/world_frame.h); NaN where unknown.
   double up_sigma_deg = std::numeric_limits<double>::quiet_NaN();
   double height_sigma_m = std::numeric_limits<double>::quiet_NaN();
   int contact_frames = 0;  ///< frames in which at least one foot was held
-  /// How fast ankles move across the view that the lifter calls standing, median over the clip before the ground held
-  /// them, m/s: a camera that moves although none was said to takes standing feet with it. NaN: none was seen.
+  /// Median speed across the view of ankles that the lifter predicts to stand, m/s, before the ground held them. A
+  /// camera that moves although it was given as static makes it large. NaN: none was seen.
   double standing_speed_mps = std::numeric_limits<double>::quiet_NaN();
-  std::vector<StandingFoot> stances;  ///< all of the longest shot, on the plane or not, where the answer has them
+  std::vector<StandingFoot> stances;  ///< all of the longest shot, on the plane or not, at their solved positions
 };
 
-/// How the path of a camera that moves came to its length.
+/// Scale of a moving camera's path.
 struct CameraPathSummary {
   bool moves = false;      ///< a path was given
-  double scale_m = 1;      ///< metres a unit of the path's translations; 0: not known, its rotations alone were used
+  double scale_m = 1;      ///< metres per unit of the path's translations; 0: not known, only its rotations were used
   bool estimated = false;  ///< from the person (camera_scale.h)
   double sigma_m = 0;      ///< standard deviation of an estimated scale
-  std::string why;         ///< what an estimate was made from, or why none could be
+  std::string why;         ///< the evidence of an estimate, or the reason why there is none
 };
 
 struct TrackSequenceSummary {
@@ -111,12 +111,12 @@ struct TrackSequenceSummary {
   std::vector<TermCost> costs;                ///< of every term, the largest first; their sum is final_cost
   std::optional<WorstStretch> worst_stretch;  ///< of clips of two seconds and more
   double focal_px = 0;                        ///< used or estimated
-  /// What the detections by themselves say of it where it was joined with the prior (camera_knowledge.h); else nothing.
+  /// The estimate before it was joined with the prior (camera_knowledge.h); none if it was not.
   std::optional<FocalFit> focal_fit;
-  /// Standard deviation of log focal_px when it was estimated with uncertainty; 0 when it was known, NaN when its
-  /// spread is not known.
+  /// Standard deviation of log focal_px when it was estimated with uncertainty; 0 when it was known, NaN when the
+  /// standard deviation is not known.
   double focal_log_sigma = 0;
-  double stature_m = 0;  ///< at which the body was held because it was given; 0: the mean body's
+  double stature_m = 0;  ///< as given in the input; 0: the mean body's
   int num_observations = 0, num_parameters = 0;
   GroundSummary ground;
   CameraPathSummary camera_path;
@@ -131,8 +131,8 @@ struct TrackSequenceResult {
   TrackSequenceSummary summary;
 };
 
-/// How a term of image residuals ended; `px` holds |residual| of each observation with a weight, pixels (0 of
-/// nothing).
+/// Final errors of a term of image residuals; `px` holds |residual| of each observation with a weight, pixels. The
+/// errors are 0 without observations.
 TermSummary SummarizeTerm(const std::string& term, const std::vector<double>& px, int unmatched = 0);
 
 }  // namespace bodyloom

@@ -36,24 +36,6 @@ std::string SizesText(const std::vector<int>& sizes) {
   return text.empty() ? "none" : text;
 }
 
-/// ∂o/∂(the translation's three columns) of o = FrameLayout::BodyPlace().
-Matrix3d DerivativeOfPlace(const FrameLayout& layout, const Vector3d& place) {
-  if (layout.knowledge != CameraKnowledge::kWeak) return Matrix3d::Identity();
-  Matrix3d d_place;
-  d_place << -place.z() * Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY();
-  return d_place;
-}
-
-/// ∂vec_rowmajor(R exp δ)/∂δ
-Eigen::Matrix<double, 9, 3> DerivativeOfEntries(const Matrix3d& R) {
-  Eigen::Matrix<double, 9, 3> d_entries;
-  for (int c = 0; c < 3; ++c) {
-    const Matrix3d d = R * Skew(Vector3d::Unit(c));
-    for (int i = 0; i < 9; ++i) d_entries(i, c) = d(i / 3, i % 3);
-  }
-  return d_entries;
-}
-
 /// Fills the values of the inputs and, with derivatives, their derivatives by the unknowns.
 class InputReader {
  public:
@@ -69,7 +51,7 @@ class InputReader {
     shared_block_ = static_cast<int>(states.size()) * (layout.TranslationBlock() + 1);
   }
 
-  /// `d_value` has no columns when derivatives are not wanted.
+  /// `d_value` has no columns if derivatives are not requested.
   void Read(const CompiledInputs::Input& input, double* value, Eigen::Ref<RowMatrixXd> d_value) {
     const bool derivatives = d_value.cols() > 0;
     const FrameState& state = *states_[input.frame];
@@ -79,9 +61,8 @@ class InputReader {
       case Kind::kSurfacePoint: {
         const PointJacobian point = BodyOf(input.frame).OfVertices(input.vertices, input.weights);
         const bool weak = layout_.knowledge == CameraKnowledge::kWeak;
-        const Vector3d place = layout_.BodyPlace(state);
         Eigen::Map<Vector3d> at(value);
-        at = weak ? Vector3d(point.point + place) : point.point;
+        at = weak ? Vector3d(point.point + layout_.BodyPlace(state)) : point.point;
         if (!derivatives) return;
         for (size_t i = 0; i < point.joints.size(); ++i) {
           const int column = layout_.column_of_joint[point.joints[i]];
@@ -89,7 +70,7 @@ class InputReader {
           d_value.middleCols<3>(first + column) = point.d_point_d_rotation[i];
           Reads(input.frame, FrameLayout::BlockOfColumn(column));
         }
-        d_value.middleCols<3>(first + layout_.translation_column) = DerivativeOfPlace(layout_, place);
+        d_value.middleCols<3>(first + layout_.translation_column) = layout_.BodyPlaceByTranslation(state);
         Reads(input.frame, layout_.TranslationBlock());
         if (B == 0) return;
         d_value.middleCols(shared_column_, B) = point.d_point_d_betas;
@@ -102,7 +83,7 @@ class InputReader {
         entries = R;
         const int column = layout_.column_of_joint[input.joint];
         if (!derivatives || column < 0) return;
-        d_value.middleCols<3>(first + column) = DerivativeOfEntries(R);
+        d_value.middleCols<3>(first + column) = EntriesByIncrement(R);
         Reads(input.frame, FrameLayout::BlockOfColumn(column));
         return;
       }
@@ -289,8 +270,9 @@ void AddUserTerms(std::span<const UserTerm> terms, SequenceProblem* problem) {
   }
 }
 
-std::unique_ptr<FrameTerm> MakeUserCostTerm(const UserTerm& term, const FrameLayout& layout, int t) {
-  UserCost cost = CheckedCost(term, CompileInputs(term, *layout.model, layout.num_betas), t);
+std::unique_ptr<FrameTerm> MakeUserCostTerm(const UserTerm& term, const std::shared_ptr<const CompiledInputs>& inputs,
+                                            int t) {
+  UserCost cost = CheckedCost(term, inputs, t);
   return cost.function == nullptr ? nullptr : std::make_unique<UserCostTerm>(std::move(cost));
 }
 

@@ -4,8 +4,8 @@
 ///   cost += ½ ρ(s),  H += ρ′(s) JᵀJ,  g += ρ′(s) Jᵀr,  s = ‖r‖²,  J = ∂r/∂blocks · ∂blocks/∂unknowns
 /// ∂blocks/∂unknowns: of a landmark or a surface point that of geometry/body/surface_jacobian.h (and of
 /// FrameLayout::BodyPlace), of a rotation's nine numbers ∂vec(R exp δ)/∂δ, of translation and betas the identity, of
-/// the focal length f ∂f/∂log f = f. Joints that are held give zeros. Gauss–Newton as everywhere: the loss's second
-/// derivative is left out.
+/// the focal length f ∂f/∂log f = f. Joints that are held give zeros. This is the Gauss–Newton approximation, without
+/// the loss's second derivative.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@
 
 namespace bodyloom {
 
-/// What a term reads, compiled for a body.
+/// Inputs of a term, compiled for a body.
 struct CompiledInputs {
   struct Input {
     TermInput::Kind kind;
@@ -40,7 +40,7 @@ struct CompiledInputs {
 /// After CheckUserTerm(). Throws std::invalid_argument when the term reads betas and none are estimated.
 std::shared_ptr<const CompiledInputs> CompileInputs(const UserTerm& term, const BodyModel& model, int num_betas);
 
-/// One cost function with what it reads.
+/// One cost function with its inputs.
 struct UserCost {
   std::shared_ptr<const CompiledInputs> inputs;
   std::shared_ptr<const ceres::CostFunction> function;
@@ -52,10 +52,11 @@ struct UserResidual {
   bool valid = false;
   Eigen::VectorXd r;
   RowMatrixXd J;            ///< columns: each frame's num_frame_columns(), betas, log focal length (if estimated)
-  std::vector<char> reads;  ///< by unknown block in the same order: the residual may depend on it, whatever the state
+  std::vector<char> reads;  ///< by unknown block in the same order: the residual may depend on it at some state
 };
 
-/// `states`: of the frames that are read, in their order. `result->J` and `reads` only with derivatives.
+/// Evaluates a cost function. `states`: of the frames that are read, in their order. Fills `result->J` and `reads` only
+/// with derivatives.
 void EvaluateUserCost(const UserCost& cost, const FrameLayout& layout, std::span<const FrameState* const> states,
                       const Eigen::VectorXd& betas, double log_focal, bool derivatives, UserResidual* result);
 
@@ -93,12 +94,13 @@ struct SequenceProblem;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
-/// Asks every term for its cost functions and puts them into the problem; its frames, cuts and layout must be set.
-/// Throws std::invalid_argument, in one line that names term and frame, for CheckUserTerm()'s reasons and when the
-/// parameter blocks of a cost function do not have the sizes of what the term reads.
+/// Adds the cost functions of every term to the problem, whose frames, cuts and layout must be set. Throws
+/// std::invalid_argument, in one line that names term and frame, for CheckUserTerm()'s reasons and when the parameter
+/// blocks of a cost function do not have the sizes of the term's inputs.
 void AddUserTerms(std::span<const UserTerm> terms, SequenceProblem* problem);
-/// The cost function of frame t of a term of one frame, or null.
-std::unique_ptr<FrameTerm> MakeUserCostTerm(const UserTerm& term, const FrameLayout& layout, int t);
+/// The cost function of frame t of a term of one frame, or null. `inputs` are CompileInputs() of the term.
+std::unique_ptr<FrameTerm> MakeUserCostTerm(const UserTerm& term, const std::shared_ptr<const CompiledInputs>& inputs,
+                                            int t);
 /// One entry a term.
 std::vector<PlanEntry> PlanUserTerms(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::unique_ptr<ClipTerm> MakeUserTerms(const ClipTermInput& clip);

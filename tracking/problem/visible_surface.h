@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The posed body of one frame as the camera sees it, for terms that need to know what is visible. The body is posed in
-/// float by the SIMD skinner (error below 1e-6 m: it decides which face a pixel sees and nothing else; residuals are
-/// computed in double) and rasterised by the visibility buffer. Keeps its memory and the shaped body between calls, so
-/// frames of one shape pay for skinning and rasterising only. One instance a thread.
+/// The visible surface of the posed body in one frame, for terms that depend on visibility. The body is posed in float
+/// by the SIMD skinner (error below 1e-6 m, which affects only the choice of the visible face; residuals are computed
+/// in double) and rasterised by the visibility buffer. Keeps its memory and the shaped body between calls, so frames of
+/// one shape only need skinning and rasterising. One instance a thread.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,9 +18,9 @@ namespace bodyloom {
 
 class VisibleSurface {
  public:
-  /// False when a value is not finite or the camera has no image size; nothing is visible then. `translation` is the
-  /// body's, zero for weak perspective, whose scale and offset are in `camera`. `skinner` poses all vertices of
-  /// `model`.
+  /// Poses and rasterises the body. Returns false when a value is not finite or the camera has no image size; nothing
+  /// is visible then. `translation` is the body's, zero for weak perspective, whose scale and offset are in `camera`.
+  /// `skinner` poses all vertices of `model`.
   bool Render(const std::shared_ptr<const Skinner>& skinner, const BodyModel& model, const Eigen::VectorXd& betas,
               const std::vector<Eigen::Matrix3d>& rotations, const Eigen::Vector3d& translation, const Camera& camera);
 

@@ -20,9 +20,9 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kKernel = 3;          ///< c of ρ, and the distance in σ within which a foot is on the plane
-constexpr double kMostSizeSigmas = 3;  ///< of log s, of somebody who stands on the plane
-constexpr double kLeastShare = 0.5;    ///< of their standing time on it
+constexpr double kKernel = 3;         ///< c of ρ, and the distance in σ within which a foot is on the plane
+constexpr double kMaxSizeSigmas = 3;  ///< of log s, of somebody who stands on the plane
+constexpr double kMinShare = 0.5;     ///< of their standing time on it
 
 double Seconds(const StandingPerson& person) {
   double sum = 0;
@@ -35,7 +35,7 @@ double SigmaOf(const StandingFoot& stance, const Vector3d& up) {
   return std::hypot(feet.height_m, up.dot(stance.place_m.normalized()) * feet.depth_m);
 }
 
-/// Median height of the camera above the person's places, weighted by time.
+/// Median height of the camera above the person's stances, weighted by time.
 double CameraHeightAbove(const StandingPerson& person, const Vector3d& up) {
   std::vector<std::pair<double, double>> heights;  // of the places, seconds
   for (const StandingFoot& stance : person.stances) heights.emplace_back(up.dot(stance.place_m), stance.seconds);
@@ -122,10 +122,11 @@ class Solver {
     }
     return {up_, CameraHeightAbove(all, up_), std::vector<double>(people_.size(), 0)};
   }
-  /// Everybody on one plane: h at the geometric mean of people's own. None when it is above some and below others.
+  /// Start with everybody on one plane: h is the geometric mean of people's own heights. None when the camera is above
+  /// some and below others.
   [[nodiscard]] std::optional<Fit> OnOnePlane(const std::vector<char>& stands) const {
     Fit fit{up_, 0, std::vector<double>(people_.size(), 0)};
-    // Where sizes are known, these say how high the camera is.
+    // People of known size determine the height of the camera.
     bool any_known = false;
     for (size_t i = 0; i < people_.size(); ++i) any_known = any_known || (stands[i] && people_[i].size_known);
     double sum = 0, sign = 0;
@@ -190,31 +191,32 @@ class Solver {
   const double size_sigma_;
 };
 
-/// Whoever's size is farthest off, if that is too far; of several that are as far off, who stands for the least time.
+/// The person whose size deviates by the largest amount, if that is too large; of several equal ones, the one with the
+/// shortest standing time.
 std::optional<size_t> OfImpossibleSize(const std::vector<StandingPerson>& people, const std::vector<char>& stands,
                                        const Fit& fit, double size_sigma) {
-  double most = 0;
+  double maximum = 0;
   for (size_t i = 0; i < people.size(); ++i) {
-    if (stands[i]) most = std::max(most, std::abs(fit.log_size[i]));
+    if (stands[i]) maximum = std::max(maximum, std::abs(fit.log_size[i]));
   }
-  if (!(most > kMostSizeSigmas * size_sigma)) return std::nullopt;
+  if (!(maximum > kMaxSizeSigmas * size_sigma)) return std::nullopt;
   std::optional<size_t> found;
   for (size_t i = 0; i < people.size(); ++i) {
-    if (!stands[i] || std::abs(fit.log_size[i]) < 0.99 * most) continue;
+    if (!stands[i] || std::abs(fit.log_size[i]) < 0.99 * maximum) continue;
     if (!found || Seconds(people[i]) < Seconds(people[*found])) found = i;
   }
   return found;
 }
 
-/// Whoever stands on the plane for the smallest share of their time, if that is too small.
+/// The person who stands on the plane for the smallest share of their time, if that is too small.
 std::optional<size_t> OnSomethingElse(const std::vector<StandingPerson>& people, const std::vector<char>& stands,
                                       const Solver& solver, const Fit& fit) {
-  double least = kLeastShare;
+  double minimum = kMinShare;
   std::optional<size_t> found;
   for (size_t i = 0; i < people.size(); ++i) {
     if (!stands[i]) continue;
     const double share = solver.SecondsOn(fit, i) / Seconds(people[i]);
-    if (share < least) least = share, found = i;
+    if (share < minimum) minimum = share, found = i;
   }
   return found;
 }
@@ -243,7 +245,8 @@ CommonGround FindCommonGround(const std::vector<StandingPerson>& people, const V
   bool sizes = options.size_sigma > 0;
   for (; num_standing >= 2; --num_standing) {
     Fit fit = solver.Best(result.stands, sizes);
-    // Nobody's feet are seen better than this, however often they are put down: what lifts them is the same each time.
+    // Near the plane sizes change heights by less than σ of a standing foot, which more stances do not reduce: heels
+    // are raised alike in all of them.
     const bool near = sizes && std::abs(fit.height_m) * options.size_sigma < GroundPlaneOptions().height_m;
     if (near) fit = solver.Best(result.stands, sizes = false);
     std::optional<size_t> other;

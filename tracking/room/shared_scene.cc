@@ -47,7 +47,7 @@ void JoinVerticals(const std::vector<const TrackSequenceSummary*>& people, Share
   scene->has_up = sum.norm() > 0;
   if (!scene->has_up) return;
   scene->ground.up = sum.normalized();
-  // The lifter errs alike for everybody: the mean of several is taken for no surer than the surest.
+  // The lifter's errors are common to all people: σ of the mean is not smaller than the smallest σ.
   bool given = true;
   for (const TrackSequenceSummary* person : people) {
     if (!person->ground.has_up) continue;
@@ -81,7 +81,7 @@ void JoinGrounds(const std::vector<TrackSequenceSummary>& people, const CommonGr
     scene->size = common.size;
     return;
   }
-  // One person alone on a plane has it to themselves, when the others do not stand elsewhere for longer.
+  // The plane of a single standing person is used unless the others stand elsewhere for longer.
   double total_s = 0, alone_s = 0;
   const GroundSummary* alone = nullptr;
   for (size_t i = 0; i < people.size(); ++i) {

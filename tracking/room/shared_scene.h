@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the fits of several people, each made alone, say together of the scene: focal length, vertical and ground.
+/// Joins the separate fits of several people to a common scene: focal length, vertical and ground.
 ///
-/// Focal length: the fits' answers joined with the prior (camera_knowledge.h). One person alone keeps their fit's
-/// answer. Vertical: mean of the people's verticals, weighted by the frames of each and 1/(spread + 2°)².
-/// Ground and sizes: common_ground.h. Of one person who stands, the plane that their own fit found.
+/// Focal length: the fits' estimates joined with the prior (camera_knowledge.h). A single person keeps the estimate of
+/// their fit. Vertical: mean of the people's verticals, weighted by the frames of each and 1/(spread + 2°)².
+/// Ground and sizes: common_ground.h. If only one person stands, the plane of their own fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,24 +26,23 @@ struct SharedScene {
   double focal_log_sigma = 0;  ///< of log focal_px; 0 when the focal length was known
   bool has_up = false;
   KnownGround ground;                              ///< valid when has_up
-  std::string why;                                 ///< what was found of the ground, or why nothing
+  std::string why;                                 ///< the evidence for the ground, or the reason why none was found
   WorldSource source = WorldSource::kLevelCamera;  ///< how the vertical and the ground were found
-  /// Of each person, relative to what their fit assumed; 1 where nothing was seen of it, and where it was known.
+  /// Size of each person relative to the assumption of their fit; 1 if not estimated, or if it was known.
   std::vector<double> size;
 };
 
-/// `prior`: that of the fits. People whose fit failed are left out; so is, of the focal length, whoever has a
-/// focal_log_sigma that is not a positive number, unless it is 0: then the focal length was known to everybody.
+/// `prior`: that of the fits. People whose fit failed are ignored; so are, for the focal length, those whose
+/// focal_log_sigma is not a positive number, except 0: then the focal length was known to all fits.
 SharedScene JoinScenes(const std::vector<TrackSequenceSummary>& people, const FocalPrior& prior,
                        const CommonGroundOptions& options = {});
 
-// The world of a clip from what its fits found of the vertical and of the ground.
-
-/// Of one person. Where no plane was found the ground lies under the lowest of `joints` (frames of J×3, camera frame;
-/// no rows where a frame is unknown), and where no vertical was found either the camera is taken for level.
+/// The world frame of a clip from the vertical and the ground of one person's fit. If no plane was found the ground
+/// lies under the lowest of `joints` (frames of J×3, camera frame; no rows for unknown frames), and if no vertical was
+/// found either, the camera is assumed to be level.
 WorldFrame WorldOfGround(const GroundSummary& ground, const std::vector<MatrixX3d>& joints);
 
-/// Of several people in one view, `joints` of all of them.
+/// The same for several people in one view, with the `joints` of all of them.
 WorldFrame WorldOfScene(const SharedScene& scene, const std::vector<MatrixX3d>& joints);
 
 }  // namespace bodyloom

@@ -108,7 +108,7 @@ ceres::LossFunction* CeresProblem::Memory::Loss(int term, double kernel, double 
   return wrapper.get();
 }
 
-/// Puts the blocks into the problem, in an order that depends on the clip alone.
+/// Adds the blocks to the problem, in an order that depends only on the clip.
 class CeresProblem::Builder {
  public:
   explicit Builder(Memory* memory) : m_(*memory), source_(memory->source), layout_(memory->source.layout) {}
@@ -302,7 +302,7 @@ std::vector<double> CeresProblem::CostByTerm() {
   memory_->batch.PrepareForEvaluation(false, true);
   for (const Block& block : memory_->blocks) {
     double cost = 0;
-    // The point is prepared: nothing is evaluated anew for each block.
+    // The point is prepared, so blocks use the cached evaluation.
     memory_->problem->EvaluateResidualBlockAssumingParametersUnchanged(block.id, true, &cost, nullptr, nullptr);
     costs[block.term] += cost;
   }

@@ -18,9 +18,9 @@ using Eigen::VectorXd;
 constexpr double kMinRelativeDecrease = 1e-3, kMinDiagonal = 1e-6, kMaxDiagonal = 1e32;
 constexpr double kStartRadius = 1e4, kMaxRadius = 1e16, kMinRadius = 1e-32;
 constexpr int kMaxInvalidSteps = 5;
-/// What an iteration counts for at least: frozen frames cost some time too.
-constexpr double kLeastIteration = 0.25;
-constexpr double kEarlyTolerance = 1e-3;  ///< when all keypoints come in (ChainOptions::early_dense)
+/// Minimum count of an iteration, since frozen frames take some time too.
+constexpr double kMinIteration = 0.25;
+constexpr double kEarlyTolerance = 1e-3;  ///< below it all keypoints are used (ChainOptions::early_dense)
 
 /// The size of the trust region.
 class Radius {
@@ -77,7 +77,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   count();
   report.seconds_evaluation += watch.Lap();
   report.initial_cost = report.final_cost = cost;
-  // Multipliers are held with the shared values: with any of them no part of the frames moves alone.
+  // Multipliers are held with the shared values, so with multipliers no frames are frozen.
   FrozenFrames frozen(chain.num_far_rows() > 0 ? 0 : options.chain.frozen_share);
   double spent = 0;  // iterations, those of a part of the frames by its size
   const auto freeze = [&](const std::vector<char>& frames) {
@@ -100,7 +100,8 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     frozen.Clear();
     return true;
   };
-  // All frames with all their keypoints, evaluated here: what may end the descent. False when that changed nothing.
+  // All frames with all their keypoints, evaluated at this point, as the end of the descent requires. False when that
+  // changed nothing.
   const auto make_whole = [&]() {
     if (!thinned && !(reusing && chain.num_skipped() > 0)) return false;
     chain.LimitPoints(0);
@@ -120,7 +121,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   int invalid_steps = 0;
   bool rejected = false, moved = false,
        fresh = true;  // fresh: the point was reached by an accepted step, or is the first
-  for (;; spent += std::max(kLeastIteration, frozen.moving_share())) {
+  for (;; spent += std::max(kMinIteration, frozen.moving_share())) {
     const int iteration = static_cast<int>(spent);
     if (options.on_iteration && !options.on_iteration(iteration, cost)) {
       return finish(SolveStatus::kStopped, "stopped by the caller");
@@ -252,15 +253,15 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
 
 namespace {
 
-/// Frozen frames are released when the predicted decrease of the others falls below so many times theirs …
+/// Frozen frames are released when the predicted decrease of the others falls below this many times theirs …
 constexpr double kLevel = 2;
 /// … unless that was less than this part of the tolerance.
 constexpr double kNegligible = 0.1;
-/// Frames beside a moving one that move too: smoothness hands its step on.
+/// Number of frames on each side of a moving one that move too, since smoothness propagates its step.
 constexpr Eigen::Index kReach = 4;
-/// So few frames between moving ones are not worth freezing (and one alone would not be allowed: chain_factor.h).
+/// Maximum length of a run between moving frames that is not frozen (a single frame is not allowed: chain_factor.h).
 constexpr Eigen::Index kShortest = 4;
-/// A chain of which less than this part would be frozen is not divided.
+/// Minimum share of frozen frames for which a chain is divided.
 constexpr double kWorthwhile = 0.3;
 
 }  // namespace

@@ -24,7 +24,7 @@ FixedLag::FixedLag(SequenceProblem clip, int max_frames, int num_threads)
 void FixedLag::DropFirst() {
   const ChainPoint x{problem_.states, problem_.betas, problem_.log_focal};
   ChainPrior next;
-  // Where the first frame cannot be eliminated nothing of it is kept: the next frames hold themselves.
+  // If the first frame cannot be eliminated its information is dropped; the next frames are determined without it.
   if (!std::isfinite(chain_.Linearise(x)) || !chain_.Marginalise(x, &next)) next = ChainPrior();
   prior_ = std::move(next);
   chain_.SetPrior(prior_.set ? &prior_ : nullptr);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The last frames of a chain that grows: a fixed-lag smoother.
+/// Fixed-lag smoother: solves the last frames of a growing chain.
 ///
 /// A window of at most `max_frames` frames is solved by the iterations of chain_solver.h. When it is full, its oldest
-/// frame is eliminated and leaves a ChainPrior on the two frames behind it and on shape and focal length. Time and
-/// memory of a frame are bounded. In a linear Gaussian problem the window holds what a solve of all frames so far
-/// would give for them.
+/// frame is marginalised to a ChainPrior on the next two frames and on shape and focal length. Time and memory per
+/// frame are bounded. In a linear Gaussian problem the window's states equal those of a solve of all frames so far.
 #pragma once
 
 #include <functional>
@@ -23,23 +22,23 @@ class FixedLag {
   FixedLag(const FixedLag&) = delete;
   FixedLag& operator=(const FixedLag&) = delete;
 
-  /// Appends a frame at its starting state; when the window is full its first frame goes. `cut_before`: it does not
-  /// continue the last one. Returns how many frames have gone (0 or 1).
+  /// Appends a frame at its starting state; when the window is full, removes its first frame. `cut_before`: it does not
+  /// continue the last one. Returns the number of frames removed (0 or 1).
   int Add(FrameData frame, FrameState start, double timestamp, bool cut_before);
 
-  /// At most this many iterations, with ChainOptions::reuse_linearisation = `reuse_share`. A failure leaves the states
-  /// at the best point that was found.
+  /// Runs at most this many iterations, with ChainOptions::reuse_linearisation = `reuse_share`. After a failure the
+  /// states are at the best point found.
   SolveReport Solve(int max_iterations, double reuse_share, double function_tolerance = 1e-5);
 
-  /// VisitCovariance() of chain_inverse.h at the window's states, for frames begin ≤ t < end of it; frames that have
-  /// left count through the prior. Later solves are the same with it as without.
+  /// Runs VisitCovariance() of chain_inverse.h at the window's states, for its frames begin ≤ t < end; removed frames
+  /// count through the prior. Does not affect later solves.
   bool VisitCovariance(int begin, int end, const std::function<void(int, const Eigen::MatrixXd&)>& visit);
 
   /// Shape prior, betas, states and observations may be changed between calls; Touch(t) after the latter.
   [[nodiscard]] SequenceProblem& problem() { return problem_; }
   [[nodiscard]] const SequenceProblem& problem() const { return problem_; }
   void Touch(int t) { chain_.Forget(t); }
-  /// Frame t of the window does not continue the one before. Nothing of the frames before stays.
+  /// Makes frame t of the window one that does not continue the one before; it keeps no information of earlier frames.
   void Cut(int t);
   void LimitPoints(int max_points) { chain_.LimitPoints(max_points); }
   [[nodiscard]] int num_frames() const { return static_cast<int>(problem_.states.size()); }

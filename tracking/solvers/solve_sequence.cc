@@ -111,9 +111,9 @@ double CostOf(const SequenceProblem& problem, int num_threads) {
   return cost;
 }
 
-/// Windows one after the other, each from where the one before has left the frames that both have, beside frames that
-/// are held where they are: smoothness reaches across, so there is no seam, and every window lowers the cost of the
-/// whole. Shape and focal length stay.
+/// Solves overlapping windows one after the other, each from the states that the one before has left. The frames next
+/// to a window are held constant and coupled to it by smoothness, so there is no seam, and every window lowers the cost
+/// of the whole. Shape and focal length are held.
 SolveReport SolveInWindows(const SolveOptions& options, SequenceProblem* problem) {
   const int T = static_cast<int>(problem->states.size()), size = options.max_frames_at_once;
   SolveReport report;

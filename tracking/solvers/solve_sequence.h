@@ -7,22 +7,18 @@
 
 namespace bodyloom {
 
-/// The problem's states, betas and log_focal hold the answer afterwards. The answer is the same to the last bit for any
-/// number of threads. Throws std::invalid_argument when the problem's sizes contradict each other.
+/// Solves the problem and writes the solution to its states, betas and log_focal. The solution has the same bytes for
+/// any number of threads. Throws std::invalid_argument when the problem's sizes contradict each other.
 SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options);
 
-// A SequenceProblem by Ceres: Levenberg–Marquardt with sparse Cholesky on the blocks of ceres_problem.h, for any
-// structure.
-
-/// As SolveSequence(), which calls it.
+/// Implements SolveSequence() with Ceres: Levenberg–Marquardt with sparse Cholesky on the blocks of ceres_problem.h,
+/// for any structure.
 SolveReport SolveWithCeres(SequenceProblem* problem, const SolveOptions& options);
 
-// Keeps OpenMP out of small linear algebra.
-
-/// While it lives, OpenMP regions that this thread enters run on this thread alone; the setting returns afterwards.
-/// CHOLMOD's supernodal factorisation requests four threads whatever the machine has, for every supernode: a chain of
-/// frames has thousands of small ones, so the threads sleep and wake 8,000 times a factorisation and the solve takes
-/// twice as long, with the same bytes as its result. (SuiteSparse 5.12, CHOLMOD_OMP_NUM_THREADS.)
+/// Makes OpenMP regions that this thread enters run on this thread only, during its lifetime. CHOLMOD's supernodal
+/// factorisation requests four threads for every supernode, on any machine: a chain of frames has thousands of small
+/// ones, so the threads sleep and wake 8,000 times a factorisation and the solve takes twice as long, with the same
+/// bytes as its result. (SuiteSparse 5.12, CHOLMOD_OMP_NUM_THREADS.)
 class SerialOpenMp {
  public:
   SerialOpenMp();

@@ -39,19 +39,27 @@ class CostTable {
     added.cost = cost;
   }
 
-  void AddFrames(int num_threads) {
+  void AddFrames(int num_threads, FrameResiduals* residuals) {
     std::vector<std::vector<double>> costs(T_);
+    std::vector<FrameResiduals> of_frame(residuals == nullptr ? 0 : T_);
     ParallelFor(static_cast<int>(T_), num_threads, [&](int t) {
       thread_local FrameEvaluator evaluator;
       FrameSystem system;
       evaluator.Evaluate(problem_.layout, problem_.frames[t], problem_.states[t], problem_.betas, problem_.log_focal,
-                         false, &system, nullptr, &costs[t]);
+                         false, &system, residuals == nullptr ? nullptr : &of_frame[t], &costs[t]);
     });
     for (size_t t = 0; t < T_; ++t) {
       size_t i = 0;
       for (const auto& term : problem_.frames[t].terms) {
         const double cost = costs[t][i++];
         if (!term->is_empty()) Of(term->name()).of_frame[static_cast<Eigen::Index>(t)] += cost;
+      }
+    }
+    for (const FrameResiduals& frame : of_frame) {
+      for (const auto& [term, pixels] : frame) {
+        PixelResiduals& all = (*residuals)[term];
+        all.px.insert(all.px.end(), pixels.px.begin(), pixels.px.end());
+        all.unmatched += pixels.unmatched;
       }
     }
   }
@@ -148,9 +156,9 @@ class CostTable {
 
 }  // namespace
 
-std::vector<TermCosts> CostsByTerm(const SequenceProblem& problem, int num_threads) {
+std::vector<TermCosts> CostsByTerm(const SequenceProblem& problem, int num_threads, FrameResiduals* residuals) {
   CostTable table(problem);
-  table.AddFrames(num_threads);
+  table.AddFrames(num_threads, residuals);
   table.AddCouplings();
   table.AddSmoothness();
   table.AddVelocities();
@@ -183,21 +191,22 @@ std::optional<WorstStretch> FindWorstStretch(const std::vector<TermCosts>& costs
   worst.begin_s = timestamps[worst.begin];
   worst.end_s = timestamps[worst.end - 1];
   worst.cost_ratio = of_frame.sum() > 0 ? highest * T / of_frame.sum() : 0;
-  double most_above = 0;
+  double max_above = 0;
   for (const TermCosts& term : costs) {
     if (term.of_frame.size() != T) continue;
     const double there = term.of_frame.segment(worst.begin, count).sum();
     const double above = there / count - term.of_frame.sum() / T;
-    if (above <= most_above) continue;
-    most_above = above;
+    if (above <= max_above) continue;
+    max_above = above;
     worst.term = term.term;
     worst.term_share = there / (highest * count);
   }
   return worst;
 }
 
-void SummariseCosts(const SequenceProblem& problem, int num_threads, TrackSequenceSummary* summary) {
-  const std::vector<TermCosts> costs = CostsByTerm(problem, num_threads);
+void SummariseCosts(const SequenceProblem& problem, int num_threads, FrameResiduals* residuals,
+                    TrackSequenceSummary* summary) {
+  const std::vector<TermCosts> costs = CostsByTerm(problem, num_threads, residuals);
   summary->worst_stretch = FindWorstStretch(costs, problem.timestamps);
   for (const TermCosts& term : costs) summary->costs.push_back({term.term, term.cost});
   std::stable_sort(summary->costs.begin(), summary->costs.end(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The cost of a clip's problem by term: which term weighs how much, over the whole clip and where it fits worst.
+/// The cost of a clip's problem by term, over the whole clip and in its second of worst fit.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "tracking/problem/frame_accumulator.h"
 #include "tracking/problem/sequence_problem.h"
 #include "tracking/problem/track_summary.h"
 
@@ -15,20 +16,23 @@ namespace bodyloom {
 /// ½ Σ ρ of one term's residuals.
 struct TermCosts {
   std::string term;  ///< FrameTerm::name(), "smoothness", "velocity", "shape prior", "stature", "focal length prior"
-  Eigen::VectorXd of_frame;  ///< T: of what lies between frames at the last of them; empty: of no frame
-  double cost = 0;           ///< in all
+  Eigen::VectorXd of_frame;  ///< T: costs between frames count at the last of them; empty: not by frame
+  double cost = 0;           ///< total
 };
 
-/// At the problem's states; their costs sum to the problem's. Terms come in the order in which they are summed. The
-/// same bytes for any number of threads.
-std::vector<TermCosts> CostsByTerm(const SequenceProblem& problem, int num_threads);
+/// Costs of all terms at the problem's states, in the order in which they are summed; their sum is the problem's cost.
+/// Same bytes for any number of threads. `residuals`, if given, receives the pixel residuals of the terms that have
+/// some.
+std::vector<TermCosts> CostsByTerm(const SequenceProblem& problem, int num_threads,
+                                   FrameResiduals* residuals = nullptr);
 
-/// The second of the clip whose cost a frame is highest, and the term whose cost a frame there is most above what it is
-/// in the whole clip. Nothing for clips of less than two seconds.
+/// Finds the second of the clip with the highest cost per frame, and the term whose cost per frame there exceeds its
+/// mean over the clip by the largest amount. None for clips of less than two seconds.
 std::optional<WorstStretch> FindWorstStretch(const std::vector<TermCosts>& costs,
                                              const std::vector<double>& timestamps);
 
-/// Fills the summary's table of costs and its worst stretch.
-void SummariseCosts(const SequenceProblem& problem, int num_threads, TrackSequenceSummary* summary);
+/// Fills the summary's table of costs and its worst stretch, and `residuals` as CostsByTerm() does.
+void SummariseCosts(const SequenceProblem& problem, int num_threads, FrameResiduals* residuals,
+                    TrackSequenceSummary* summary);
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// L_d of paper A: a frame stays near the pose of another system, or near the pose that the solve starts from.
+/// L_d of paper A: pulls a frame towards the pose of another system, or towards the start of the solve.
 ///   ½ λ_d (Σ_j ‖log(R̄_jᵀ R_j)‖²/σ_R² + ‖t − t̄‖²/σ_t²)
 /// over the estimated joints; R̄, t̄: the initialiser's, camera frame; σ_R radians, σ_t metres (weak perspective: log
 /// scale and offsets). No kernel: λ_d is small, and each stage sets its own (track_stages.h): a pull towards the start
@@ -37,7 +37,7 @@ class InitialiserTerm : public CopyableTerm<InitialiserTerm> {
   [[nodiscard]] bool runs() const { return !rotations.empty() && weight > 0; }
 };
 
-/// An entry where an initialiser is given; without one the lifter takes its place (terms/lifted/lifted_pose.h).
+/// An entry if an initialiser is given; otherwise the lifter is used (terms/lifted/lifted_pose.h).
 std::vector<PlanEntry> PlanInitialiser(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::unique_ptr<ClipTerm> MakeInitialiserTerms(const ClipTermInput& clip);
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Joint limits: the term
 ///   ½ Σ_j ‖e_j / σ‖²,   e_j = LimitExcess() of joint j's axis-angle, radians
-/// in every frame, for the joints that are estimated; no kernel, because beyond the box nobody can be. The limits are
-/// a box on the axis-angle of each joint's rotation from the T-pose, in SMPL's joint frames
-/// (x left, y up, z front; arms along ±x, palms down). Outside the box the excess is penalised quadratically.
+/// in every frame, for the joints that are estimated; without a kernel, because poses outside the box are impossible.
+/// The limits are a box on the axis-angle of each joint's rotation from the T-pose, in SMPL's joint frames (x left, y
+/// up, z front; arms along ±x, palms down). Outside the box the excess is penalised quadratically.
 ///
 /// Ranges follow the adult ranges of motion of the American Academy of Orthopaedic Surgeons (1965: elbow 0–150°, knee
-/// 0–135°, extended to the passive limit reached in squats, hip flexion 120°), widened by 10–20°, because they shall
-/// exclude the impossible only; what is likely is the pose prior's business.
+/// 0–135°, extended to the passive limit reached in squats, hip flexion 120°), widened by 10–20°, because they exclude
+/// only impossible poses; the pose prior models which poses are likely.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,7 +33,7 @@ struct JointLimits {
   };
   std::vector<Range> ranges;
 
-  /// The table for the joints that the body has by name; unknown joints are free.
+  /// The table of ranges for the body's joints, found by name; unknown joints are free.
   static JointLimits ForBody(const BodyModel& model);
 };
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// 2D joints, L_f of paper A: a landmark of the body should appear where the detector saw it.
+/// 2D joints, L_f of paper A: the reprojection error of the body's landmarks.
 ///   ½ Σ_k ρ(‖(π(x_k) − y_k)/σ_k‖²)        ρ: Geman–McClure with c = `kernel` (robust.h)
 /// x_k: the landmark in the camera frame, metres; π(x_k), y_k, σ_k: pixels. A landmark that cannot be projected costs
-/// c²/2 and is counted. σ_k grows with the person's height in the image and with the detector's doubt
-/// (KeypointSigmaPx()). The first stage is wide (c = 8), the others narrow (4): a start is off by more than a detector.
+/// c²/2 and is counted. σ_k increases with the person's height in the image and decreases with confidence
+/// (KeypointSigmaPx()). The kernel is wide in the first stage (c = 8) and narrow in the others (4), since errors of a
+/// start exceed those of a detector.
 /// Derivatives: ∂π/∂x of the camera, ∂x/∂θ of body_points.h. Runs when the input has 2D joints.
 #pragma once
 
@@ -26,7 +27,7 @@ struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
-/// A 2D joint: the compiled landmark, where it was seen, and how well.
+/// A 2D joint: the compiled landmark, its detected position and the σ of that.
 struct LandmarkObservation {
   const CompiledPoint* point = nullptr;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();

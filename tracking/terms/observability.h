@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Observability: which joints the observations determine.
+/// Selects the joints that the observations determine.
 #pragma once
 
 #include <span>
@@ -11,9 +11,9 @@
 
 namespace bodyloom {
 
-/// Joints worth estimating. With dense keypoints: all. With 2D joints only: those that move some observed landmark by
-/// at least 4 cm a radian in the rest pose; the others (wrists, hands, feet without toe detections) only carry the
-/// prior, and holding them at rest changes nothing that was observed by more than that lever. `skip` false: all joints.
+/// Joints to estimate. With dense keypoints: all. With 2D joints only: those that move some observed landmark by at
+/// least 4 cm a radian in the rest pose; the others (wrists, hands, feet without toe detections) are determined only by
+/// the prior, and holding them at rest affects observations by no more than that lever. `skip` false: all joints.
 /// A landmark or surface point that a user's term reads counts as observed, and a joint that it reads is estimated.
 std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip,
                                   std::span<const UserTerm> user_terms = {});

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Knees are straight where nothing says otherwise.
+/// Weak prior towards straight knees.
 ///   ½ w² Σ_k ρ(θ_k²)        ρ: Geman–McClure with c = kStraightKneesKernel, radians
 /// θ_k: flexion of knee k, radians: the x component of its axis-angle (joint_limits.h has the frame; 0 in the T-pose,
-/// where thigh and shin are in line). A detector whose hips lie lower on the body than the body's own makes thighs
-/// short in the image, and a short thigh looks like a bent knee; with how far legs point out of the image plane a
-/// camera sees a bend of up to 40° hardly at all (cos is flat). The kernel lets go of knees that are bent far, as in a
-/// squat: the pull is largest at 13° and an eighth of that at 60°. Runs in every frame and for both knees where they
-/// are estimated and w > 0.
+/// where thigh and shin are in line). A detector whose hips lie lower than the body's makes thighs short in the image,
+/// and a short thigh looks like a bent knee; a bend of up to 40° out of the image plane hardly changes the image, as
+/// foreshortening is of second order. The kernel releases knees that are bent far, as in a squat: the pull is largest
+/// at 13° and an eighth of that at 60°. Runs in every frame, for both knees if they are estimated and w > 0.
 #pragma once
 
 #include <array>
@@ -27,7 +26,7 @@ struct TrackSequenceOptions;
 
 inline constexpr double kStraightKneesKernel = 0.4;
 
-/// Joint indices of the left and the right knee; −1 where the body has none of that name.
+/// Joint indices of the left and the right knee; −1 if the body has none of that name.
 std::array<int, 2> FindKnees(const BodyModel& model);
 
 class StraightKneesTerm : public CopyableTerm<StraightKneesTerm> {
@@ -43,7 +42,7 @@ class StraightKneesTerm : public CopyableTerm<StraightKneesTerm> {
   void Add(FrameAccumulator* sums) const override;
 };
 
-/// An entry where w > 0.
+/// An entry if w > 0.
 std::vector<PlanEntry> PlanStraightKnees(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::unique_ptr<ClipTerm> MakeStraightKneesTerms(const ClipTermInput& clip);
 

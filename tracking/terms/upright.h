@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The trunk does not lean towards or away from the camera.
+/// Prior against leaning of the trunk towards or away from the camera.
 ///   ½ w ρ((n·u)² / σ²)        ρ: Geman–McClure with c = kUprightKernel, σ = kUprightSigma
-/// u: the root's up axis in the camera frame; n: horizontal, towards the scene. A camera barely sees this lean (cos is
-/// flat), and people are mostly upright. It saturates, so bending and lying stay free. n is the view's direction until
-/// the clip's own vertical is known (terms/ground_contact/clip_ground.h). Runs in every frame whose root is estimated.
+/// u: the root's up axis in the camera frame; n: horizontal, towards the scene. The image hardly depends on this lean
+/// (foreshortening is of second order), and people are mostly upright. The kernel saturates, so bending and lying are
+/// possible. n is the viewing direction until the clip's vertical is known (terms/ground_contact/clip_ground.h). Runs
+/// in every frame whose root is estimated.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,7 +34,7 @@ class UprightTerm : public CopyableTerm<UprightTerm> {
   void Add(FrameAccumulator* sums) const override;
 };
 
-/// Why the clip's vertical is not used, or empty when it is.
+/// The reason why the clip's vertical is not used; empty if it is.
 std::string WhyNoUp(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::vector<PlanEntry> PlanUpright(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::unique_ptr<ClipTerm> MakeUprightTerms(const ClipTermInput& clip);

@@ -28,7 +28,7 @@ Matrix3d TurnZ(double degrees) { return RotationFromAxisAngle(Vector3d(0, 0, deg
 /// Lengths below are for a person with legs of this length (hip to ankle), and scale with the body's.
 constexpr double kReferenceLeg_m = 0.80;
 
-// ---- Where the walk goes. Heading: degrees about y, 0 = towards +z, positive towards +x.
+// ---- Path of the walk. Heading: degrees about y, 0 = towards +z, positive towards +x.
 
 double HeadingAt(double path_m) { return 68 - 74 * SmoothStep((path_m - 0.95) / 1.15); }
 
@@ -156,8 +156,8 @@ Torso TorsoAt(double t) {
   return torso;
 }
 
-/// World rotation of a bone whose rest direction is `rest` and whose hinge lay along x: takes rest to `posed` and x as
-/// near as possible to `hinge`.
+/// World rotation of a bone whose rest direction is `rest` and whose hinge is along x at rest: takes rest to `posed`
+/// and x as near as possible to `hinge`.
 Matrix3d AimBone(const Vector3d& rest, const Vector3d& posed, const Vector3d& hinge) {
   const auto frame = [](const Vector3d& bone, const Vector3d& axis) {
     Matrix3d F;
@@ -211,7 +211,7 @@ class Choreography {
     const Vector3d to_heel = Vector3d(0, -rest_ankle.y(), -0.45 * to_ball.z());
     const Vector3d by_heel = to_ball - TurnX(foot.heel_up_deg) * to_ball;
     const Vector3d by_toes = to_heel - TurnX(-foot.toes_up_deg) * to_heel;
-    // Where the toes are not bent back as far as the heel is up they would dig into the floor.
+    // Toes that are bent back less than the heel is raised would penetrate the floor.
     const double dig = 0.6 * to_ball.z() * std::sin(std::max(0.0, foot.heel_up_deg - foot.toes_deg) * kDegree);
     *sole = TurnY(foot.yaw_deg) * TurnX(foot.PitchDeg());
     const Vector3d flat(scale_ * foot.ground.x(), rest_ankle.y() + scale_ * foot.lift_m + dig,
@@ -219,8 +219,8 @@ class Choreography {
     *ankle = flat + TurnY(foot.yaw_deg) * (by_heel + by_toes);
   }
 
-  /// How far the pelvis must sink so that both ankles are within reach of nearly straight legs. Moving legs are kept
-  /// further from straight, where the knee's angle changes infinitely fast with the distance.
+  /// Distance by which the pelvis must be lowered so that both ankles are within reach of nearly straight legs. Moving
+  /// legs are kept further from straight, where the knee's angle changes infinitely fast with the distance.
   double ExcessReach(const Vector3d& position, const Matrix3d& pelvis, const Vector3d (&ankles)[2],
                      double walks) const {
     double excess = 0;
@@ -272,7 +272,7 @@ class Choreography {
       pose->rotations[joint] =
           TurnY(twist) * TurnX(upright + 0.5 * breath + 1.0) * TurnZ(-0.75 * torso.tilt_deg - 1.2 * wave);
     }
-    // The eyes look for the viewer, who stands at heading 0.
+    // The head turns towards the viewer, who stands at heading 0.
     const double look =
         std::clamp(-torso.yaw_deg - 3 * twist, -62.0, 62.0) * (0.35 + 0.65 * SmoothStep((t - 0.4) / 1.2));
     pose->rotations[kNeck] = TurnY(0.42 * look) * TurnX(3);
@@ -307,7 +307,7 @@ class Choreography {
   double floor_, scale_;
 };
 
-/// Plays the piece there and back again.
+/// Plays the motion forwards and backwards in turn.
 double PieceTime(double t) {
   const double cycle = std::fmod(t, 2 * kDemoMotionSeconds);
   return cycle <= kDemoMotionSeconds ? cycle : 2 * kDemoMotionSeconds - cycle;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Detection noise on exact 2D landmarks: confidence, noise that depends on it, drift, drop-outs, swaps.
+/// Simulates detection noise on exact 2D landmarks: confidence, noise that depends on it, drift, drop-outs, swaps.
 ///
 /// All lengths are in person heights h (the height of the body in the image, pixels), as measured on nine-camera
 /// detections of dancers:
@@ -28,16 +28,16 @@ struct DetectionNoiseOptions {
   bool model_confidence = true;  ///< false: 1 where visible, 0.3 where hidden
   double dropout_probability = 0.01;
   double swap_probability = 0.004;
-  double swap_frames = 3;  ///< mean length
+  double swap_frames = 3;  ///< mean length of a swap
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-/// What the model needs to know of a frame besides where the landmarks truly are.
+/// Inputs of the model for a frame besides the true landmarks.
 struct DetectionFrame {
   double person_height_px = 0;
   std::vector<bool> hidden;         ///< K: the body is in front of the landmark
   std::vector<double> head_cosine;  ///< K: for face landmarks the cosine between the landmark's outward direction and
-                                    ///< the way to the camera; others unused
+                                    ///< the direction to the camera; others unused
 };
 
 /// Changes `exact` (confidence > 0 where the landmark is in the image) into detections. `frames` has one entry a frame.
@@ -45,9 +45,8 @@ struct DetectionFrame {
 KeypointSequence DetectKeypoints(const KeypointSequence& exact, const std::vector<DetectionFrame>& frames,
                                  const DetectionNoiseOptions& options, uint64_t seed);
 
-// The numbers behind synthetic detections, for every maker of them (detection_noise.h for whole clips,
-// data_tools/synthesis/lifter for training windows). Lengths in person heights. Source: medians over nine cameras of
-// two dance clips.
+// Constants of the detection model, shared by whole clips (above) and training windows (data_tools/synthesis/lifter).
+// Lengths in person heights. Source: medians over nine cameras of two dance clips.
 
 /// σ = (0.006 + 0.024 (1 − confidence)^1.5) person heights.
 template <typename T>
@@ -60,9 +59,9 @@ inline constexpr double kSlowNoiseShare = 0.85, kWhiteNoiseShare = 0.45;
 inline constexpr double kSlowNoiseSeconds = 0.25;     ///< time constant of the slow part
 inline constexpr double kConstantNoise = 0.005;       ///< offset of a landmark for a clip
 inline constexpr double kHeavyTailConfidence = 0.35;  ///< below it noise is multiplied by 1 + e, e exponential, mean 1
-inline constexpr double kHeavyTailSeconds = 0.2;      ///< redrawn so often
-inline constexpr double kHiddenFactor = 0.16;         ///< of the confidence, when the body hides the landmark
-inline constexpr double kConfidenceDrift = 0.09, kHiddenConfidenceDrift = 0.05;  ///< slow changes of the confidence
+inline constexpr double kHeavyTailSeconds = 0.2;      ///< interval at which e is redrawn
+inline constexpr double kHiddenFactor = 0.16;         ///< factor of the confidence if the body hides the landmark
+inline constexpr double kConfidenceDrift = 0.09, kHiddenConfidenceDrift = 0.05;  ///< slow drift of the confidence
 inline constexpr double kConfidenceDriftSeconds = 0.3;
 inline constexpr double kMinDetectedConfidence = 0.02;
 
@@ -89,7 +88,8 @@ inline double OpenConfidence(std::string_view kind) {
   return 0.65;
 }
 
-/// peak · logistic((c + shift)/width) with c the cosine between the way the landmark faces and the way to the camera.
+/// peak · logistic((c + shift)/width) with c the cosine between the landmark's outward direction and the direction to
+/// the camera.
 struct FaceConfidence {
   double peak, shift, width;
   template <typename T>

@@ -32,7 +32,7 @@ double JointSize(const PerturbationOptions& o, const BodyModel& body, int joint)
   return o.end_rad;
 }
 
-/// T values of mean 0, variance 1: a part that stays and a part that drifts.
+/// T values of mean 0, variance 1: a constant part and a drifting part.
 std::vector<double> SmoothError(const std::vector<double>& times, const PerturbationOptions& o, uint64_t seed,
                                 uint64_t channel) {
   std::vector<double> values = SmoothDrift(times, o.time_constant_s, HashRandom(seed, {kDrifting, channel}));

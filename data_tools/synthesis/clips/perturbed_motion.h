@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A perturbed motion, wrong by a given amount: in place of another system's output that initialises the tracker.
+/// Perturbs a motion by a given projection error, to simulate the output of another system as initialisation.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct PerturbationOptions {
          end_rad = 0.15;
   double sideways_m = 0.02, depth_m = 0.15;  ///< translation across and along the view
   double shape = 0.3;                        ///< error of each beta
-  double time_constant_s = 0.4;              ///< errors drift like this
-  double constant_share = 0.5;               ///< share of each error's variance that stays for the whole clip
+  double time_constant_s = 0.4;              ///< time constant of the errors' drift
+  double constant_share = 0.5;               ///< share of each error's variance that is constant over the clip
 };
 
 /// Mean over frames and vertices of the distance between the projections of two motions in the camera frame, in pixels
@@ -31,9 +31,9 @@ struct PerturbedMotion {
   double error_px = 0;  ///< as measured by MeanProjectionError
 };
 
-/// `truth` (camera frame) with a smooth random error in every joint, the translation and the shape, of one common size
-/// found by false position so that MeanProjectionError is target_px within 0.5 %. Same seed, same result. Throws
-/// std::invalid_argument when target_px is not positive or so large that no error of joint angles reaches it.
+/// Returns `truth` (camera frame) with a smooth random error in every joint, the translation and the shape, of one
+/// common size found by false position so that MeanProjectionError is target_px within 0.5 %. Same seed, same result.
+/// Throws std::invalid_argument when target_px is not positive or so large that no error of joint angles reaches it.
 PerturbedMotion PerturbMotion(const BodyModel& body, const Camera& camera, const Motion& truth, double target_px,
                               const PerturbationOptions& options, uint64_t seed, int num_threads);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Smooth functions of time for motion made by code.
+/// Smooth functions of time for procedural motion.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,8 @@ inline double Bump(double x) {
   return y * y * y;
 }
 
-/// Straight lines between keys (time, value), constant outside, averaged over ±blur_s with the weight (1 − x²)³: never
-/// leaves the range of the keys, and has four continuous derivatives. Exact: a polyline is a sum of ramps
+/// Linear interpolation between keys (time, value), constant outside, averaged over ±blur_s with the weight (1 − x²)³:
+/// it stays within the range of the keys and has four continuous derivatives. Exact: a polyline is a sum of ramps
 /// max(0, t − t_i), and an averaged ramp is a polynomial.
 class SmoothCurve {
  public:
@@ -60,12 +60,12 @@ class SmoothCurve {
 
 // Random errors that change slowly.
 
-/// One value a time (increasing, seconds), mean 0, variance 1, correlation exp(−Δt/τ): continuous but rough
+/// One value per time (increasing, seconds), mean 0, variance 1, correlation exp(−Δt/τ): continuous but rough
 /// (Ornstein–Uhlenbeck).
 std::vector<double> RoughDrift(const std::vector<double>& times_s, double time_constant_s, HashRandom random);
 
-/// One value a time, mean 0, variance about 1, differentiable: a sum of waves with random phases and frequencies spread
-/// evenly below 1/(2π) · 2/time_constant_s.
+/// One value per time, mean 0, variance about 1, differentiable: a sum of waves with random phases and frequencies
+/// spread evenly below 1/(2π) · 2/time_constant_s.
 std::vector<double> SmoothDrift(const std::vector<double>& times_s, double time_constant_s, HashRandom random);
 
 }  // namespace bodyloom

@@ -33,7 +33,7 @@ Matrix3d YUpFromWorld(Motion::Up up) {
   return Matrix3d::Identity();
 }
 
-/// A few hundred vertices of every frame, enough to know what the clip spans.
+/// A few hundred vertices of every frame, enough to determine the extent of the clip.
 std::vector<Vector3d> SampleSurface(const BodyModel& body, const Motion& motion) {
   std::vector<int> vertices;
   for (int v = 0; v < body.num_vertices(); v += std::max(1, body.num_vertices() / 300)) vertices.push_back(v);
@@ -80,7 +80,8 @@ SynthCamera PlaceSynthCamera(const BodyModel& body, const Motion& motion, const 
   BODYLOOM_CHECK(!points.empty(), "synth camera: the motion has no finite frame");
   for (Vector3d& x : points) x = R * x;
 
-  // The distance and the sideways shift hang together: a few rounds of "centre the picture, then come as near as fits".
+  // Distance and lateral shift depend on each other: a few iterations of centring the image and minimising the
+  // distance.
   Eigen::AlignedBox3d box;
   for (const Vector3d& x : points) box.extend(x);
   Vector3d centre = box.center();

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Paths of a camera that moves, for synthetic clips.
+/// Paths of moving cameras for synthetic clips.
 ///
-/// kHandHeld  stands where PlaceSynthCamera() puts it and shakes: rotations about its three axes and places along them
-///            are smooth drifts (smooth_curve.h) of shake_deg and shake_m, with a time constant of 0.6 s
-/// kWalking   goes along with the person: as kHandHeld about a place that follows the person's pelvis over the ground,
+/// kHandHeld  at the position of PlaceSynthCamera(), with shake: rotations about its three axes and translations along
+///            them are smooth drifts (smooth_curve.h) of shake_deg and shake_m, with a time constant of 0.6 s
+/// kWalking   follows the person: as kHandHeld about a position that follows the person's pelvis over the ground,
 ///            averaged over a second
-/// kOrbit     goes round the person by orbit_deg over the clip, about the vertical through the pelvis, which it follows
+/// kOrbit     circles the person by orbit_deg over the clip, about the vertical through the pelvis, which it follows
 ///            likewise; a smooth start and end, and the same shake
-/// The camera is placed for the person in place (kWalking, kOrbit), so it may be near however far they go.
+/// For kWalking and kOrbit the camera is placed as if the person stayed in place, so its distance does not depend on
+/// the person's path.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +30,7 @@ enum class SynthCameraMotion {
 };
 /// "still", "hand-held", "walking", "orbit".
 std::string ToString(SynthCameraMotion motion);
-/// Throws std::invalid_argument for other texts.
+/// Parses these texts; throws std::invalid_argument for others.
 SynthCameraMotion SynthCameraMotionFromString(const std::string& text);
 
 struct SynthCameraPathOptions {
@@ -44,8 +45,8 @@ struct SynthCameraPath {
   std::vector<CameraPose> camera_from_scene;  ///< of every frame; empty for kStill
 };
 
-/// Throws std::invalid_argument when options are out of range, no frame is finite, or a camera that moves is one of
-/// weak perspective. The same for the same seed.
+/// Throws std::invalid_argument when options are out of range, no frame is finite, or the camera is a moving one of
+/// weak perspective. Deterministic for a seed.
 SynthCameraPath MakeSynthCameraPath(const BodyModel& body, const Motion& motion, const SynthCameraOptions& camera,
                                     const SynthCameraPathOptions& path, uint64_t seed);
 

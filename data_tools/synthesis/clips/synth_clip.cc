@@ -35,7 +35,7 @@ const std::vector<std::string>& LandmarkNames() {
   return names;
 }
 
-/// How far inside the body a landmark lies: something nearer by more than this hides it.
+/// Depth of a landmark inside the body; a surface nearer by more than this hides it.
 double DepthInsideBody(const std::string& name) {
   if (name.ends_with("shoulder")) return 0.12;
   if (name.ends_with("hip")) return 0.17;
@@ -44,7 +44,7 @@ double DepthInsideBody(const std::string& name) {
   return 0.035;  // nose, eyes, ears, toes, heels lie on the skin
 }
 
-/// Which frames are lost, in runs: a two-state chain whose gaps have the wanted mean length and share.
+/// Flags of dropped frames, in runs: a two-state Markov chain with the requested mean length and share of gaps.
 std::vector<bool> InRuns(int count, double share, double mean_run, HashRandom random) {
   std::vector<bool> on(count, false);
   if (share <= 0) return on;
@@ -87,8 +87,8 @@ class SurfaceSampler {
   std::vector<double> area_up_to_;
 };
 
-/// d(pixel)/d(u, v) at a surface point: how far in the image a label moves when its chart coordinates do. Zero for
-/// faces without chart area.
+/// d(pixel)/d(u, v) at a surface point: displacement of a label in the image by its chart coordinates. Zero for faces
+/// without chart area.
 Matrix2d PixelByChart(const BodyModel& body, const MatrixX3d& vertices, const Camera& camera,
                       const SurfacePoint& point) {
   const auto corners = body.data().faces.row(point.face);
@@ -111,7 +111,7 @@ DenseKeypoint MakeDense(const SurfacePoint& point, const Vector2d& pixel, double
   return {point.face, point.barycentric.cast<float>(), pixel.cast<float>(), static_cast<float>(sigma_px)};
 }
 
-/// Everything that frames share.
+/// Data shared by all frames.
 class ClipMaker {
  public:
   ClipMaker(const BodyModel& body, const SynthClipOptions& options, SynthClip* clip)
@@ -169,7 +169,7 @@ class ClipMaker {
     }
   }
 
-  /// After all frames: what needs the whole clip.
+  /// Steps that need the whole clip, after all frames.
   void Finish() {
     if (options_.keypoints) {
       clip_.keypoints = DetectKeypoints(clip_.keypoints_truth, detection_frames_, options_.detection,
@@ -276,7 +276,8 @@ class ClipMaker {
     if (has_coco) FaceDirections(points, &frame);
   }
 
-  /// Cosines between where nose and eyes (forward) and ears (to their side) look and the way to the camera.
+  /// Cosines between the outward directions of nose and eyes (forward) and ears (sideways) and the direction to the
+  /// camera.
   void FaceDirections(const MatrixX3d& points, DetectionFrame* frame) const {
     const Vector3d nose = points.row(0), between_ears = 0.5 * (points.row(3) + points.row(4));
     const Vector3d to_camera =
@@ -286,7 +287,7 @@ class ClipMaker {
     for (int k = 0; k < 3; ++k) frame->head_cosine[k] = forward.dot(to_camera);
     frame->head_cosine[3] = left.dot(to_camera);
     frame->head_cosine[4] = -left.dot(to_camera);
-    // For these the direction decides better than a depth test whether they are in view.
+    // For these, the direction is a better criterion of visibility than a depth test.
     for (int k = 0; k < 5; ++k) frame->hidden[k] = false;
   }
 

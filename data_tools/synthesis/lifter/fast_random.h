@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Random numbers for windows by the thousand: the same streams as hash_random.h, cheaper distributions.
+/// Fast random numbers for training windows: the streams of hash_random.h with cheaper distributions.
 #pragma once
 
 #include <algorithm>
@@ -77,7 +77,7 @@ inline double CubicStep(double x) {
   return x * x * (3 - 2 * x);
 }
 
-/// From 0 to 1 within min_rise_s to max_rise_s, beginning at a random place of [earliest, latest] of the window.
+/// From 0 to 1 within min_rise_s to max_rise_s, beginning at a random time in [earliest, latest] of the window.
 inline std::vector<float> RandomRamp(int count, double rate, double min_rise_s, double max_rise_s, double earliest,
                                      double latest, HashRandom* random) {
   const double rise = rate * random->Uniform(min_rise_s, max_rise_s), start = random->Uniform(earliest, latest) * count;

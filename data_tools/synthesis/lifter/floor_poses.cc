@@ -22,9 +22,9 @@ struct Span {
   [[nodiscard]] float Draw(HashRandom* random) const { return static_cast<float>(random->Uniform(low, high)); }
 };
 
-/// `thigh`: its angle to the way straight down in the world, forwards positive, so that π/2 lies along the floor;
-/// `turn`: the thigh's way outwards about the trunk's axis; `twist`: about itself, outwards. The knee bends by
-/// `knee` + follow · (thigh − π/2): with follow about 2 the foot stays on the floor under a raised knee.
+/// `thigh`: its angle to the world's downward direction, forwards positive, so that π/2 lies along the floor; `turn`:
+/// the thigh's rotation outwards about the trunk's axis; `twist`: about itself, outwards. The knee bends by `knee` +
+/// follow · (thigh − π/2): with follow about 2 the foot stays on the floor under a raised knee.
 struct LegPose {
   Span thigh, out, turn, twist, knee;
   float follow;
@@ -41,10 +41,10 @@ struct FloorPose {
   Span pitch;  ///< of the pelvis, forwards; −π/2 lies on the back
   Span roll;   ///< about the trunk's own axis, before it
   LegPose legs[2];
-  float same_legs;  ///< probability that the second leg does as the first
+  float same_legs;  ///< probability that both legs have the same pose
   ArmPose arms;
   Span spine, neck;
-  float settle;  ///< largest turn that puts it to rest
+  float settle;  ///< maximum rotation of settling
 };
 
 constexpr Span kNone{0, 0}, kSmall{-.15F, .15F};
@@ -333,7 +333,7 @@ Vector3f CentreOfMass(const PosedPerson& posed) {
   return sum / (0.58F + 4 * (0.05F + 0.03F + 0.014F + 0.01F));
 }
 
-/// Turns the pose about the edge of its support until it rests on more, at most `allowed` in all.
+/// Rotates the pose about the edge of its support until the support grows, by at most `allowed` in total.
 void Settle(const LifterBody& body, const LifterPerson& person, float allowed, std::vector<Quaternionf>* pose) {
   PosedPerson posed;
   std::array<Vector3f, LifterBody::kNumBalls> bottoms;
@@ -385,7 +385,7 @@ std::vector<Quaternionf> RandomFloorPose(int kind, const LifterBody& body, const
     const int side = first ^ i;
     pose[kLeftHip + side] = side == 0 ? hip : MirrorRotation(hip);
     pose[kLeftKnee + side] = TurnBy(X(a.knee));
-    // Feet point down where nothing stands on them, and lie flat where shin and floor make an angle.
+    // Feet without load point down; they lie flat where shin and floor form an angle.
     const float shin = a.thigh - a.knee;
     pose[kLeftAnkle + side] = TurnBy(X(std::clamp(shin < -0.9F ? 0.7F : shin, -0.7F, 0.8F)));
   }
@@ -427,7 +427,7 @@ void AddFloorPoses(const LifterBody& body, const LifterPerson& person, const Lif
   const double manner = random.Uniform();
   for (float& d : down) d = manner < 0.2 ? d : manner < 0.35 ? 1 - d : 1;
 
-  // What of the recorded movement stays in the limbs; limbs of poses that stand on them keep little.
+  // Share of the recorded movement kept in the limbs; small for poses that stand on their limbs.
   const float kept_limbs = static_cast<float>(random.Uniform(0, 0.3)),
               kept_head = static_cast<float>(random.Uniform(0, 0.6));
   const bool rolls = random.Uniform() < 0.15, crawls = random.Uniform() < 0.25;

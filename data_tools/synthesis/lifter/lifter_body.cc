@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr float kSmallWeight = 0.03F;  // bones below it ride on the landmark's main bone
+constexpr float kSmallWeight = 0.03F;  // bones below it are merged with the landmark's main bone
 
 /// A ball that fills a part of the body: around a landmark (or the middle of a pair) or a joint; metres, mean body.
 struct Ball {
@@ -23,7 +23,7 @@ struct Ball {
   int index;
   float radius;
 };
-constexpr float kSole = -1;  // stands for the distance to the sole, which depends on the body
+constexpr float kSole = -1;  // placeholder for the distance to the sole, which depends on the body
 constexpr Ball kBalls[LifterBody::kNumBalls] = {
     {Ball::kLandmark, kLifterLeftBigToe, kSole},
     {Ball::kLandmark, kLifterLeftBigToe + 1, kSole},

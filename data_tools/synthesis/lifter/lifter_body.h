@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The lifter's 21 landmarks of a posed body, fast: each compiled once into a few bones, without pose correctives (they
-/// move joint landmarks by millimetres), in single precision.
+/// Fast evaluation of the lifter's 21 landmarks of a posed body: each is reduced once to a few bones, without pose
+/// correctives (they move joint landmarks by millimetres), in single precision.
 ///
 ///   x = Σ_i R_i (s_i ∘ l_i(β) + w_i o) + w_i p_i     l_i(β) = q_i(β) − w_i J_i(β), Σ w_i = 1
 ///   (tracking/problem/body_points.h)
@@ -19,12 +19,12 @@
 
 namespace bodyloom {
 
-/// A person: what does not change over a window.
+/// A person: data that are constant over a window.
 struct LifterPerson {
   Eigen::Vector3f pelvis;                               ///< of the rest pose
   std::array<Eigen::Vector3f, kPoseJoints> offset;      ///< from the parent joint
   std::vector<Eigen::Vector3f> local;                   ///< one for each landmark and bone
-  std::array<Eigen::Vector3f, kLifterPoints> detector;  ///< what the detector means instead, in the landmark's bone
+  std::array<Eigen::Vector3f, kLifterPoints> detector;  ///< the detector's own place for the landmark, in its bone
   float reference_length = 0;                           ///< Lref, metres
   float size = 1;                                       ///< Lref over that of the mean body
 };
@@ -35,14 +35,14 @@ struct PosedPerson {
   std::array<Eigen::Vector3f, kLifterPoints> point;
 };
 
-/// How people of a window differ from the mean body; spreads as in LifterWindowOptions.
+/// Deviations of a window's person from the mean body; spreads as in LifterWindowOptions.
 struct LifterPersonSpread {
   double shape_sd = 0, bone_noise = 0, landmark_sd_m = 0, biased_detector = 0, detector_bias_sd_m = 0;
 };
 
 class LifterBody {
  public:
-  /// Throws std::invalid_argument when the body has not SMPL's first 24 joints or lacks one of LifterPointNames().
+  /// Throws std::invalid_argument when the body lacks SMPL's first 24 joints or one of LifterPointNames().
   explicit LifterBody(const BodyModel& body);
 
   /// `betas` may be shorter or longer than the body's (missing ones are zero, further ones are ignored).
@@ -53,18 +53,18 @@ class LifterBody {
   void Pose(const LifterPerson& person, const Eigen::Quaternionf* rotations, const Eigen::Vector3f& trans,
             PosedPerson* posed) const;
 
-  /// Where the detector sees landmark k when it means a place of its own.
+  /// Position of landmark k as defined by a biased detector.
   [[nodiscard]] Eigen::Vector3f DetectedPoint(const LifterPerson& person, const PosedPerson& posed, int k) const {
     return posed.point[k] + posed.rotation[main_bone_[k]] * person.detector[k];
   }
 
-  /// Height of the lowest point: landmarks, trunk and head as balls that fill the body.
+  /// Height of the lowest point of landmarks, trunk and head, modelled as balls that fill the body.
   [[nodiscard]] float Lowest(const LifterPerson& person, const PosedPerson& posed) const;
-  /// The balls' lowest points, for whoever needs to know what touches the floor: kNumBalls of (x, height, z).
+  /// Lowest points of the balls, to determine contact with the floor: kNumBalls of (x, height, z).
   static constexpr int kNumBalls = 22;
   void BallBottoms(const LifterPerson& person, const PosedPerson& posed,
                    std::array<Eigen::Vector3f, kNumBalls>* bottoms) const;
-  /// How far heels and toes are above the sole in the rest pose, metres of the mean body (toe, heel).
+  /// Height of toes and heels above the sole in the rest pose, metres of the mean body (toe, heel).
   [[nodiscard]] std::array<float, 2> foot_radius() const { return {toe_radius_, heel_radius_}; }
 
  private:

@@ -16,10 +16,9 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr double kFloorShare = 0.1;  // of the frames, in which the body reaches through its floor
+constexpr double kFloorShare = 0.1;  // share of the frames in which the body reaches below its floor
 
-// Feet of retargeted motion hover by a few centimetres; that much counts as standing, and little more as less of a
-// jump.
+// Feet of retargeted motion hover by a few centimetres; such clearances become zero, slightly larger ones are reduced.
 constexpr float kHover = 0.02F, kSurelyOff = 0.08F;
 
 struct Instant {
@@ -27,7 +26,7 @@ struct Instant {
   float part;
 };
 
-/// Where the pendulum is at `time_s`.
+/// Reflects `time_s` into the clip.
 Instant At(const LifterClip& clip, double time_s) {
   const double period = 2 * clip.duration_s;
   double t = std::fmod(time_s, period);

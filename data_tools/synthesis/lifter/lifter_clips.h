@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Motions in compact form, and stretches of them at any speed.
+/// Motions in compact form, sampled at any speed.
 #pragma once
 
 #include <vector>
@@ -18,14 +18,13 @@ struct LifterClip {
 
 inline constexpr double kLifterClipRate = 60;  ///< faster motions are resampled to it
 
-/// `motion`: 24 or more joints, y up, on a flat floor when has_floor. Where that floor is, is measured on this body (it
-/// stands on its own soles, and sources differ in where the pelvis is): the height below which the body's lowest point
-/// is in one frame of ten. Up to 2 cm above it is on it, from 8 cm on it is as high as it is. Throws
-/// std::invalid_argument with the reason when the motion cannot be used (arrays that do not fit, values that are not
-/// finite, y is not up, an uneven or missing clock, one frame).
+/// `motion`: 24 or more joints, y up, on a flat floor when has_floor. The floor's height is measured with this body
+/// (sources differ in the pelvis' height): the 10th percentile of the heights of the body's lowest point. Clearances up
+/// to 2 cm become 0, those from 8 cm on are kept. Throws std::invalid_argument with the reason when the motion cannot
+/// be used (inconsistent arrays, non-finite values, y not up, irregular or missing timestamps, one frame).
 LifterClip CompactClip(const Motion& motion, bool has_floor, const LifterBody& body);
 
-/// Frames at start_s + i·step_s; beyond the clip's ends time runs back and forth (a clip is a pendulum).
+/// Frames at start_s + i·step_s; beyond the clip's ends time is reflected.
 void SampleClip(const LifterClip& clip, double start_s, double step_s, int num_frames, PoseSequence* poses);
 
 /// The same for the listed joints alone, written into `poses` (which has frames already): target[i] takes the rotations
@@ -33,7 +32,7 @@ void SampleClip(const LifterClip& clip, double start_s, double step_s, int num_f
 void SampleJoints(const LifterClip& clip, double start_s, double step_s, const std::vector<int>& source,
                   const std::vector<int>& target, bool mirror, PoseSequence* poses);
 
-/// Left becomes right: x → −x.
+/// Mirrors left and right: x → −x.
 void MirrorPoses(PoseSequence* poses);
 
 }  // namespace bodyloom

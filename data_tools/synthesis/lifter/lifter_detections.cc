@@ -30,7 +30,7 @@ enum NoiseStream : uint64_t {
 constexpr float kPersonHeight = 1.3F;  // in Lref
 constexpr float kBehind = 0.09F, kSoftness = 0.03F, kTurnedAway = 0.10F, kTurnedAwayFactor = 0.85F;
 
-/// What hides points behind it: from joint to joint. Points in `own` (a bit each) belong to it.
+/// An occluder between two joints. Points in `own` (a bit each) belong to it.
 struct LimbCapsule {
   int from, from_other, to, to_other;  ///< means of two points
   float radius;
@@ -49,7 +49,7 @@ constexpr LimbCapsule kCapsules[] = {
 float Logistic(float x) { return 1 / (1 + std::exp(-x)); }
 size_t At(int t, int k) { return static_cast<size_t>(t) * kLifterPoints + k; }
 
-/// By how much the body in front lowers each point's confidence: 1 in view, kHiddenFactor hidden.
+/// Factor of each point's confidence by occlusion: 1 visible, kHiddenFactor hidden.
 void HideBehindBody(const Vector3f* p, float size, std::array<float, kLifterPoints>* factor) {
   const float inverse = 1 / (kSoftness * size);
   std::array<Vector3f, kLifterPoints> ray;
@@ -83,7 +83,7 @@ void HideBehindBody(const Vector3f* p, float size, std::array<float, kLifterPoin
   }
 }
 
-/// Confidences of nose, eyes and ears by where the head looks.
+/// Confidences of nose, eyes and ears by the direction of the head.
 void FaceConfidences(const Vector3f* p, float* confidence) {
   const Vector3f between_ears = 0.5F * (p[3] + p[4]), to_camera = -between_ears.normalized();
   const float forward = (p[0] - between_ears).normalized().dot(to_camera);
@@ -128,7 +128,7 @@ void Swap(const LifterWindowOptions& options, HashRandom random, LifterFrames* f
   }
 }
 
-/// The detector's own scale of confidence, what it does not report, what it does not have.
+/// Applies the detector's own scale of confidence, and removes points that it does not report or have.
 void DetectorHabits(const LifterWindowOptions& options, HashRandom random, LifterFrames* frames) {
   const float exponent = static_cast<float>(std::exp(options.confidence_spread * random.Normal()));
   const bool cuts = random.Uniform() < options.cut_off;
@@ -192,7 +192,7 @@ void LoseStretches(const LifterWindowOptions& options, HashRandom random, Lifter
   lose(options.nothing, 0.1, 1.2, all);
 }
 
-/// An image border through the person: what lies beyond it is not seen, or guessed on the border with low confidence.
+/// An image border through the person: points beyond it are missing, or guessed on the border with low confidence.
 void CutAtBorder(const LifterWindowOptions& options, HashRandom random, LifterFrames* frames) {
   if (random.Uniform() >= options.image_border) return;
   const int edge = static_cast<int>(random.Below(5));  // bottom twice as often

@@ -64,7 +64,7 @@ LifterScene FilmPerson(const WorldMotion& motion, const LifterPerson& person, co
   const int T = static_cast<int>(motion.points.size()) / kLifterPoints;
   const auto radian = [](double degrees) { return static_cast<float>(degrees * M_PI / 180); };
   const float yaw = static_cast<float>(random.Uniform(0, 2 * M_PI));
-  // Nothing is drawn where it is off, so that windows as recorded stay what they were.
+  // Draws no random numbers when it is off, so that windows as recorded do not change.
   const bool anywhere = options.any_elevation > 0 && random.Uniform() < options.any_elevation;
   const float elevation = radian(anywhere ? random.Uniform(kLowestElevation, kHighestElevation)
                                           : random.Uniform(options.min_elevation_deg, options.max_elevation_deg));
@@ -88,7 +88,7 @@ LifterScene FilmPerson(const WorldMotion& motion, const LifterPerson& person, co
   for (int t = 0; t < T; ++t) middle += MidHip(&motion.points[static_cast<size_t>(t) * kLifterPoints]);
   middle /= static_cast<float>(T);
   Vector3f place = distance * Vector3f(aside, above, 1);  // of the middle, in the camera
-  // Back until nothing is too near and the hips stay within 45° of the axis, as in a picture that somebody framed.
+  // Moves back until no point is too near and the hips are within 45° of the axis, as in a composed shot.
   float missing = 0;
   for (const Vector3f& p : motion.points) {
     missing = std::max(missing, kMinDepth * person.size - place.z() - camera_from_world.row(2).dot(p - middle));
@@ -117,7 +117,7 @@ LifterScene FilmPerson(const WorldMotion& motion, const LifterPerson& person, co
   for (int t = 0; t < T; ++t) {
     Matrix3f turned = Matrix3f::Identity();
     if (moves) {
-      // After the person with a delay of half a second, shaking by half a degree.
+      // Follows the person with a delay of half a second, with a shake of half a degree.
       const Vector3f hip =
           camera_from_world * (MidHip(&motion.points[static_cast<size_t>(t) * kLifterPoints]) - middle) + place;
       followed =

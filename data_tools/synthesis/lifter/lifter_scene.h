@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person who moves before a camera: what is true in a window, before anybody detects anything.
+/// Ground truth of a training window: a person who moves in front of a camera, before detection.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,27 +14,27 @@ namespace bodyloom {
 struct LifterScene {
   int num_frames = 0;
   std::vector<Eigen::Vector3f> points;    ///< T·21 landmarks
-  std::vector<Eigen::Vector3f> detected;  ///< T·21 what this window's detector means by them
+  std::vector<Eigen::Vector3f> detected;  ///< T·21 the same as defined by this window's detector
   std::vector<Eigen::Vector3f> up;        ///< T unit vectors
   std::vector<float> contact;             ///< T·2 left, right foot: 1 on the ground and still, else 0
   float reference_length = 0;             ///< Lref
   float size = 1;                         ///< Lref over the mean body's
 };
 
-/// Landmarks in the world (y up), put on the floor: with a floor, each frame is moved up or down so that the lowest
-/// point of the body has the height that `poses.clearance` says (0 on the floor), whatever was done to the poses.
+/// Landmarks in the world (y up), placed on the floor: with a floor, each frame is moved vertically so that the lowest
+/// point of the body has the height `poses.clearance` (0 on the floor), also after changes to the poses.
 ///
 /// Contact of a foot, with h the height of its toe's or heel's sole above the floor and v the speed of that landmark
 /// (central differences over two frames of the window): with a floor h < 4 cm and v < 0.35 m/s; without one, h is
-/// counted from the lowest point of the body in that frame and v < 0.25 m/s. Either of toe and heel is enough. Lengths
-/// are of the mean body and scale with the person.
+/// counted from the lowest point of the body in that frame and v < 0.25 m/s. Toe or heel suffices. Lengths are of the
+/// mean body and scale with the person.
 struct WorldMotion {
   std::vector<Eigen::Vector3f> points, detected;  ///< T·21, y up
   std::vector<float> contact;                     ///< T·2
 };
 WorldMotion PoseInWorld(const LifterBody& body, const LifterPerson& person, const PoseSequence& poses, double rate);
 
-/// A random camera that has the person in front of it in every frame.
+/// Places a random camera with the person in front of it in every frame.
 LifterScene FilmPerson(const WorldMotion& motion, const LifterPerson& person, const LifterWindowOptions& options,
                        HashRandom random);
 

@@ -154,7 +154,7 @@ PoseSequence LifterWindowGenerator::MakePoses(uint64_t seed, const LifterPerson&
     AddExercises(options_, HashRandom(seed, {kExercises}), &poses);
     AddTurns(options_, HashRandom(seed, {kTurns}), &poses);
   }
-  // What lies on the floor shall not be turned off it, nor pushed up by its limbs.
+  // Less perturbation on the floor, so that bodies are not rotated off it or pushed up by their limbs.
   PerturbPoses(options_, floor ? 0.6F : 1.0F, floor ? 0.2F : 1.0F, HashRandom(seed, {kPerturb}), &poses);
   limits_.Apply(&poses);
   return poses;

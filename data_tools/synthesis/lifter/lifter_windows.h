@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Endless random training windows for the lifter: recorded motion, made more varied, filmed by a random camera and
-/// seen through a detector's eyes. What is generated and why: docs/lifter_training_data.md.
+/// Random training windows for the lifter: recorded motion with augmentation, a random camera and simulated detections.
+/// Contents and rationale: docs/lifter_training_data.md.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 
 namespace bodyloom {
 
-/// T frames. Targets are in each frame's virtual camera as MakeLifterInput computes it from these very detections;
-/// where the focal length is unknown, the features see rays that were made with a wrong one, and the targets are in the
-/// virtual camera of the right one: what is seen looks the same from there.
+/// T frames. Targets are in each frame's virtual camera as MakeLifterInput computes it from these detections; if the
+/// focal length is unknown, features are from rays with a wrong one and targets in the virtual camera of the true one,
+/// from which the detections look the same.
 struct LifterWindow {
   std::vector<float> features;    ///< T·kLifterInputs
   std::vector<float> points;      ///< T·21·3 relative to the mid-hip, in units of Lref
@@ -36,10 +36,10 @@ class LifterWindowGenerator {
   LifterWindowGenerator(const std::vector<Motion>& motions, const std::vector<char>& has_floor, const BodyModel& body,
                         const LifterWindowOptions& options);
 
-  /// The same seed gives the same window, whatever thread asks. Thread-safe.
+  /// The same seed gives the same window. Thread-safe.
   void Generate(uint64_t seed, LifterWindow* window) const;
 
-  /// The steps of Generate(), one after the other, for tests and pictures.
+  /// The steps of Generate(), one after the other, for tests and plots.
   [[nodiscard]] PoseSequence MakePoses(uint64_t seed, const LifterPerson& person) const;
   [[nodiscard]] LifterPerson MakePerson(uint64_t seed) const;
   [[nodiscard]] LifterScene MakeScene(uint64_t seed, const LifterPerson& person, const PoseSequence& poses) const;

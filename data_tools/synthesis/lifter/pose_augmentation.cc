@@ -31,7 +31,7 @@ void FlexLeg(int side, float hip, float out, float knee, float level_foot, int t
   a = a * TurnBy(AboutX(level_foot * std::clamp(hip - knee, -0.7F, 0.7F)));
 }
 
-/// Both legs down, and the trunk forward as balance requires; or one leg before the other.
+/// A squat, with the trunk forward for balance, or a lunge.
 void Squat(const LifterWindowOptions& options, HashRandom* random, PoseSequence* poses) {
   const bool lunge = random->Uniform() < options.lunge_share;
   float hip[2], knee[2], out[2];
@@ -79,8 +79,8 @@ void RaiseLeg(const LifterWindowOptions& options, bool kick, HashRandom* random,
   }
 }
 
-/// The arm of a side along a direction of the trunk's frame, given for the left (x to the left, y up, z to the front),
-/// turned about itself, its elbow bent.
+/// Sets the arm of a side along a direction of the trunk's frame, given for the left (x to the left, y up, z to the
+/// front), with a rotation about itself and a bent elbow.
 struct StretchedArm {
   Quaternionf shoulder, elbow;
 };
@@ -96,7 +96,7 @@ void MoveArm(int side, const StretchedArm& arm, float share, int t, PoseSequence
   poses->at(t, kLeftElbow + side) = Between(poses->at(t, kLeftElbow + side), arm.elbow, share);
 }
 
-/// An arm goes to a direction of its own, with its elbow bent.
+/// Moves an arm to a random direction, with its elbow bent.
 void RaiseArm(const LifterWindowOptions& options, int side, HashRandom* random, PoseSequence* poses) {
   // On the sphere, in the trunk's frame, not across the trunk's far side and not far behind it.
   const float turn = Draw(random, -0.6, 1.9), up = Draw(random, -1.0, 1.5);
@@ -109,7 +109,7 @@ void RaiseArm(const LifterWindowOptions& options, int side, HashRandom* random, 
   }
 }
 
-/// An arm is stretched out to the front, high or low, its shoulder and the trunk going after it; or both are.
+/// Stretches one or both arms out to the front, high or low, followed by shoulder and trunk.
 void Reach(const LifterWindowOptions& options, HashRandom* random, PoseSequence* poses) {
   const int first = random->Uniform() < 0.5 ? 0 : 1;
   const bool both = random->Uniform() < 0.35;
@@ -137,7 +137,7 @@ void Reach(const LifterWindowOptions& options, HashRandom* random, PoseSequence*
   }
 }
 
-/// The trunk goes forward (or a little back) over legs that stay where they are.
+/// Bends the trunk forward (or slightly back) with fixed legs.
 void Bend(const LifterWindowOptions& options, HashRandom* random, PoseSequence* poses) {
   const float pelvis = Draw(random, -0.2, 1.3), spine = Draw(random, -0.1, 0.4);
   const std::vector<float> hump = RandomHump(poses->num_frames, options.rate, 0.3, 1.5, random);
@@ -156,7 +156,7 @@ void Bend(const LifterWindowOptions& options, HashRandom* random, PoseSequence* 
 
 PoseLimits::PoseLimits(const BodyModel& body) {
   for (const JointLimits::Range& range : JointLimits::ForBody(body).ranges) {
-    // What lies beyond the wrists moves no landmark.
+    // Joints beyond the wrists move no landmark.
     if (range.joint >= kLeftWrist) continue;
     ranges_[range.joint] = {true, range.lower.cast<float>().array(), range.upper.cast<float>().array()};
   }

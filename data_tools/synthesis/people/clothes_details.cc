@@ -14,10 +14,10 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kLine_m = 0.003;       ///< half of a seam's width as it is seen
+constexpr double kLine_m = 0.003;       ///< half the visible width of a seam
 constexpr double kButtonGap_m = 0.085;  ///< from one to the next
 constexpr double kButtonRadius_m = 0.006;
-constexpr double kPlacket_m = 0.018;  ///< half the width of what buttons are sewn on
+constexpr double kPlacket_m = 0.018;  ///< half the width of the button placket
 
 bool IsFront(const OutfitCut& cut, const Vector3d& p) { return p.z() > cut.neck_z; }
 
@@ -26,7 +26,7 @@ bool IsFront(const OutfitCut& cut, const Vector3d& p) { return p.z() > cut.neck_
 ClothesDetails::ClothesDetails(const Outfit& outfit, uint64_t seed) : outfit_(outfit) {
   HashRandom random(seed, {0x64657461});
   const double unit = outfit.cut().unit;
-  // Every number is drawn whether it is used or not, so that one detail does not change another.
+  // Every random number is drawn even if unused, so that one detail does not change another.
   const auto some = [&](double share, double low, double high) {
     const bool has = random.Uniform() < share;
     const double length = random.Uniform(low, high) * unit;

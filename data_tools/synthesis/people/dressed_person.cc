@@ -10,14 +10,14 @@
 namespace bodyloom {
 
 DressedPerson::DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed,
-                             ClothesStyle style, ClothStuff stuff)
-    : DressedPerson(body, betas, Outfit(body, kind, seed, style), seed, stuff) {}
+                             ClothesStyle style, ClothMaterial material)
+    : DressedPerson(body, betas, Outfit(body, kind, seed, style), seed, material) {}
 
 DressedPerson::DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed,
-                             ClothStuff stuff)
-    : ClothWearer(body, betas, outfit.offsets_m()), outfit_(std::move(outfit)) {
+                             ClothMaterial material)
+    : ClothCollisionBody(body, betas, outfit.offsets_m()), outfit_(std::move(outfit)) {
   const LooseGarmentOptions options = LooseGarmentOf(outfit_, rest_joints(), seed);
-  if (options.length_m > 0) Wear(Cut(SewnOf(stuff, options), seed));
+  if (options.length_m > 0) Wear(Cut(GarmentOptionsFor(material, options), seed));
 }
 
 LooseGarmentOptions LooseGarmentOf(const Outfit& outfit, const MatrixX3d& rest_joints, uint64_t seed) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A body in the clothes of a synthetic person, and how its loose garment moves along with it.
+/// A body in the clothes of a synthetic person, with the simulation of its loose garment.
 ///
 /// The clothes close to the skin are the skinned surface moved outwards along its normals (outfit.h); the loose garment
-/// is cloth pinned to that surface and colliding with it (geometry/cloth/cloth_run.h). Cloth depends on how the body
-/// has moved: the same pose at another speed gives other folds.
+/// is cloth pinned to that surface and colliding with it (geometry/cloth/cloth_run.h). It depends on the past motion:
+/// the same pose at another speed gives other folds.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,25 +19,26 @@
 namespace bodyloom {
 
 /// Immutable, may be shared by threads. The body must outlive it.
-class DressedPerson : public ClothWearer {
+class DressedPerson : public ClothCollisionBody {
  public:
-  /// Throws std::invalid_argument when the body is not on SMPL's joints or has more betas given than components.
+  /// Throws std::invalid_argument when the body does not have SMPL's joints or there are more betas than components.
   DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed,
-                ClothesStyle style = ClothesStyle::kPatterned, ClothStuff stuff = ClothStuff::kCotton);
+                ClothesStyle style = ClothesStyle::kPatterned, ClothMaterial material = ClothMaterial::kCotton);
   DressedPerson(BodyModel&&, const Eigen::VectorXd&, GarmentKind, uint64_t, ClothesStyle = ClothesStyle::kPatterned,
-                ClothStuff = ClothStuff::kCotton) = delete;
+                ClothMaterial = ClothMaterial::kCotton) = delete;
 
   [[nodiscard]] const Outfit& outfit() const { return outfit_; }
 
  private:
-  DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed, ClothStuff stuff);
+  DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed,
+                ClothMaterial material);
   Outfit outfit_;
 };
 
-// How the loose garment of a synthetic person's outfit is cut.
+// Cut of the loose garment of a synthetic person's outfit.
 
-/// The garment of an outfit's kind and seed on a body with these joints (J×3, T-pose, SMPL's tree) and pinned ring
-/// height scaled along; for a suit, which has none, length_m is 0.
+/// Options of the garment for an outfit's kind and seed on a body with these joints (J×3, T-pose, SMPL's tree), with
+/// the height of the pinned ring scaled accordingly; for a suit, which has none, length_m is 0.
 LooseGarmentOptions LooseGarmentOf(const Outfit& outfit, const MatrixX3d& rest_joints, uint64_t seed);
 
 }  // namespace bodyloom

@@ -21,9 +21,9 @@ using Eigen::Vector3f;
 constexpr float kInnerShade = 0.7F;
 constexpr int kShadowMapPx = 640;
 constexpr double kShadowLift_m = 0.008;  ///< off the surface, so that it does not shade itself
-constexpr float kThrownBack = 0.2F;      ///< of the ambient light where a place is not open
+constexpr float kThrownBack = 0.2F;      ///< share of the ambient light at occluded points
 
-/// The faces of clothed body and cloth as a body that does not move, which is what pixels are resolved against.
+/// The faces of clothed body and cloth as a static body, against which pixels are resolved.
 BodyModel MeshOf(const DressedPerson& person) {
   const MatrixX3i& body = person.body().data().faces;
   const MatrixX3i& cloth = person.garment().drawn_faces;
@@ -94,7 +94,7 @@ void DressedRenderer::Resolve(const Camera& camera, bool with_shadows) {
   request.normal = true;
   request.vertex_normals = &normals_;
   request.vertex_attributes = {{{scene_.places().data(), size_t(scene_.places().size())}, 3}};
-  if (with_shadows) request.vertex_attributes.push_back({openness_, 1});
+  if (with_shadows) request.vertex_attributes.push_back({ambient_occlusion_, 1});
   request.barycentric = with_shadows;
   ResolvePixels(buffer_, scene_.mesh(), vertices_, camera, request, &pixels_);
 }
@@ -110,17 +110,17 @@ Vector3f DressedRenderer::NormalOf(int face, size_t at) const {
   return IsCloth(face) && is_inside_out_[face - scene_.num_body_faces()] ? Vector3f(-normal) : normal;
 }
 
-/// What keeps light off the assembled mesh.
+/// Computes shadow maps and ambient occlusion of the assembled mesh.
 void DressedRenderer::CastShadows() {
   if (!scene_.light().shadow_softness_m) return;
   const MatrixX3i& faces = scene_.mesh().data().faces;
   for (size_t k = 0; k < shadows_.size(); ++k) {
     shadows_[k].Render(vertices_, faces, scene_.light().towards[k].cast<double>(), kShadowMapPx);
   }
-  openness_ = open_.Compute(vertices_, normals_, faces);
+  ambient_occlusion_ = open_.Compute(vertices_, normals_, faces);
 }
 
-/// How much light there is at a pixel of the resolved ones, of all that there would be in the open and facing it.
+/// Irradiance at a resolved pixel, relative to an unoccluded surface that faces the light.
 float DressedRenderer::LightAt(int face, size_t at, const Vector3f& normal) const {
   const PersonLight& light = scene_.light();
   float lit = light.ambient;
@@ -144,7 +144,7 @@ float DressedRenderer::LightAt(int face, size_t at, const Vector3f& normal) cons
 
 void DressedRenderer::DrawImage(const Image& background, Image* image) {
   const int n = scene_.samples();
-  Resolve(ScaledCamera(scene_.camera(), n), !openness_.empty());
+  Resolve(ScaledCamera(scene_.camera(), n), !ambient_occlusion_.empty());
   *image = background;
   const PixelBox& box = buffer_.box();
   const float share = 1.0F / float(n * n);
@@ -238,7 +238,7 @@ int Mirrored(int i, int n) {
 }
 
 struct Shape {
-  float x, y, rx, ry;  ///< in heights of the picture
+  float x, y, rx, ry;  ///< in heights of the image
   bool is_box;
   Vector3f colour;
 };
@@ -246,7 +246,7 @@ struct Shape {
 }  // namespace
 
 MovingBackground::MovingBackground(int width, int height, uint64_t seed)
-    : width_(width), height_(height), picture_(2 * width, height + height / 4) {
+    : width_(width), height_(height), image_(2 * width, height + height / 4) {
   BODYLOOM_CHECK(width > 0 && height > 0, "background: ", width, "x", height, " pixels");
   HashRandom random(seed, {0x6261636b});
   const auto colour = [&](double low, double high) {
@@ -261,8 +261,8 @@ MovingBackground::MovingBackground(int width, int height, uint64_t seed)
          float(random.Uniform(0.04, 0.3)), random.Uniform() < 0.5,      colour(40, 230)};
   }
   const uint64_t noise = random.Next();
-  for (int y = 0; y < picture_.height; ++y) {
-    for (int x = 0; x < picture_.width; ++x) {
+  for (int y = 0; y < image_.height; ++y) {
+    for (int x = 0; x < image_.width; ++x) {
       const float u = float(x) / float(height), v = float(y) / float(height);
       Vector3f c = above + std::min(v, 1.0F) * (below - above);
       for (const Shape& s : shapes) {
@@ -271,7 +271,7 @@ MovingBackground::MovingBackground(int width, int height, uint64_t seed)
       }
       c += (ValueNoise({6 * u, 6 * v, 0}, noise) - 0.5F) * stain +
            Vector3f::Constant(18 * (ValueNoise({40 * u, 40 * v, 0}, noise + 1) - 0.5F));
-      for (int k = 0; k < 3; ++k) picture_.pixel(x, y)[2 - k] = uint8_t(std::clamp(c[k], 0.0F, 255.0F));
+      for (int k = 0; k < 3; ++k) image_.pixel(x, y)[2 - k] = uint8_t(std::clamp(c[k], 0.0F, 255.0F));
     }
   }
   const double speed = random.Uniform(0.02, 0.06) * height, angle = random.Uniform(0, 2 * M_PI);
@@ -284,10 +284,10 @@ Image MovingBackground::At(double time_s) const {
   const int x0 = static_cast<int>(std::floor(shift.x())), y0 = static_cast<int>(std::floor(shift.y()));
   const int fx = static_cast<int>(256 * (shift.x() - x0)), fy = static_cast<int>(256 * (shift.y() - y0));
   std::vector<int> column(width_ + 1);
-  for (int x = 0; x <= width_; ++x) column[x] = 3 * Mirrored(x + x0, picture_.width);
+  for (int x = 0; x <= width_; ++x) column[x] = 3 * Mirrored(x + x0, image_.width);
   for (int y = 0; y < height_; ++y) {
-    const uint8_t* const upper = picture_.pixel(0, Mirrored(y + y0, picture_.height));
-    const uint8_t* const lower = picture_.pixel(0, Mirrored(y + y0 + 1, picture_.height));
+    const uint8_t* const upper = image_.pixel(0, Mirrored(y + y0, image_.height));
+    const uint8_t* const lower = image_.pixel(0, Mirrored(y + y0 + 1, image_.height));
     uint8_t* to = view.pixel(0, y);
     for (int x = 0; x < width_; ++x) {
       for (int k = 0; k < 3; ++k) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pictures of a dressed person and the truth about every pixel.
+/// Renders images of a dressed person with per-pixel ground truth.
 ///
-/// The clothed body and the cloth (seen from both sides) go through one visibility buffer a resolution:
-/// - image: samples × samples samples a pixel. Colour = pattern (wardrobe.h) · light (person_light.h), cloth's inner
+/// The clothed body and the (two-sided) cloth are rendered to one visibility buffer per resolution:
+/// - image: samples × samples samples per pixel. Colour = pattern (wardrobe.h) · light (person_light.h), cloth's inner
 ///   side at 0.7 of it, averaged with the background;
-/// - labels and normals: what the pixel's centre sees; normals are interpolated, and turned towards the viewer on cloth
-///   seen from inside;
+/// - labels and normals: at the pixel's centre; normals are interpolated, and flipped towards the viewer on cloth seen
+///   from inside;
 /// - iuv: the bare body without clothes, at the pixel's centre.
 #pragma once
 
@@ -28,7 +28,7 @@
 
 namespace bodyloom {
 
-// The background of a synthetic person: a picture made of gradients, noise and a few shapes, slowly panning.
+// The background of a synthetic person: an image of gradients, noise and a few shapes, slowly panning.
 
 /// Immutable, may be shared by threads.
 class MovingBackground {
@@ -36,18 +36,18 @@ class MovingBackground {
   /// Throws std::invalid_argument for a size that is not positive.
   MovingBackground(int width, int height, uint64_t seed);
 
-  /// The view at a time (seconds), of the size given: the large picture, which goes on beyond its borders as in a
-  /// mirror, sampled bilinearly at whole pixels + velocity · time.
+  /// The view at a time (seconds) in the given size: a large image, reflected at its borders, sampled bilinearly at
+  /// integer pixels + velocity · time.
   [[nodiscard]] Image At(double time_s) const;
   [[nodiscard]] const Eigen::Vector2d& velocity_px_s() const { return velocity_px_s_; }
 
  private:
   int width_, height_;
-  Image picture_;
+  Image image_;
   Eigen::Vector2d velocity_px_s_;
 };
 
-/// What does not change from frame to frame. Immutable, may be shared by threads; the person must outlive it.
+/// Data that do not change between frames. Immutable, may be shared by threads; the person must outlive it.
 class DressedScene {
  public:
   /// Pinhole cameras only (std::invalid_argument otherwise). `seed`: of patterns and background.
@@ -59,10 +59,10 @@ class DressedScene {
   [[nodiscard]] const PersonLight& light() const { return light_; }
   [[nodiscard]] const MovingBackground& background() const { return background_; }
   [[nodiscard]] int samples() const { return samples_; }
-  /// Clothed body, then cloth, as one mesh; its faces are all that is used.
+  /// Clothed body, then cloth, as one mesh; only its faces are used.
   [[nodiscard]] const BodyModel& mesh() const { return mesh_; }
   [[nodiscard]] int num_body_faces() const { return person_.body().num_faces(); }
-  /// Place on the template or on the cloth as sewn, three values a vertex of the mesh.
+  /// Position on the template or on the cloth as sewn, three values per vertex of the mesh.
   [[nodiscard]] const MatrixX3f& places() const { return places_; }
 
  private:
@@ -76,12 +76,12 @@ class DressedScene {
   PersonLight light_;
 };
 
-/// Draws frames of a scene. Keeps its memory between frames; one a thread.
+/// Draws frames of a scene. Keeps its memory between frames; one per thread.
 class DressedRenderer {
  public:
   explicit DressedRenderer(const DressedScene& scene) : scene_(scene) {}
 
-  /// `pose` in the camera frame; `cloth` as ClothRun gives it (in the camera frame).
+  /// `pose` in the camera frame; `cloth` from ClothRun (in the camera frame).
   PersonFrame Render(const BodyPose& pose, const std::vector<Eigen::Vector3d>& cloth, double time_s);
 
  private:
@@ -101,9 +101,9 @@ class DressedRenderer {
   MatrixX3d bare_, vertices_;
   MatrixX3f normals_;
   std::array<ShadowMap, 2> shadows_;  ///< of the two lights
-  OpennessOfMesh open_;
-  std::span<const float> openness_;    ///< by vertex, of open_; empty: there are no shadows
-  std::vector<int8_t> is_inside_out_;  ///< by face of the cloth: seen from inside
+  AmbientOcclusion open_;
+  std::span<const float> ambient_occlusion_;  ///< by vertex, of open_; empty: there are no shadows
+  std::vector<int8_t> is_inside_out_;         ///< by face of the cloth: seen from inside
   VisibilityBuffer buffer_;
   ResolvedPixels pixels_;
 };

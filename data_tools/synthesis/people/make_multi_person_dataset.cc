@@ -45,7 +45,7 @@ std::string ClipName(int person, int action, int view) {
   return PersonName(person) + "/a" + std::to_string(action) + "_v" + std::to_string(view);
 }
 
-/// Steps of the floor's plane from the person's root to the origin, by frame.
+/// Translations in the floor plane from the person's root to the origin, by frame.
 std::vector<Vector3d> StepsToCentre(const Motion& motion, const Vector3d& rest_root) {
   std::vector<Vector3d> steps;
   for (int t = 0; t < motion.num_frames(); ++t) {
@@ -166,7 +166,7 @@ void CheckMotions(const std::vector<Motion>& motions, int length) {
   }
 }
 
-/// A dataset that is already there is none from now on.
+/// Invalidates an existing dataset from now on.
 void Forget(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -225,7 +225,7 @@ MakeMultiPersonDatasetSummary MakeMultiPersonDataset(const std::string& folder, 
   });
   MakeMultiPersonDatasetSummary summary;
   summary.seconds = watch.seconds();
-  summary.pictures = done * options.views * options.frames;
+  summary.images = done * options.views * options.frames;
   if (done < static_cast<int>(jobs.size())) return summary;
   WriteMultiPersonDataset(maker.Set());
   const int64_t each = int64_t{options.actions} * options.views * options.frames;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Many synthetic people, each in several actions seen by several cameras (multi_person_dataset.h), in the manner of
-/// 3DPeople (Pumarola et al., ICCV 2019): the seed makes bodies, clothes, colours and light, the motions make them
-/// move.
+/// Makes a dataset of many synthetic people, each in several actions seen by several cameras (multi_person_dataset.h),
+/// similar to 3DPeople (Pumarola et al., ICCV 2019): the seed determines bodies, clothes, colours and light.
 ///
-/// A clip takes `frames` frames, `every` apart, of a stretch of a motion chosen at random. The cloth runs once for all
-/// views of an action, through all frames in between. The camera follows the person across the floor, so that it fills
-/// the picture wherever it goes; height above the floor is kept. Views are spread evenly around the person from a
-/// random first one. The same bytes for any number of threads; clips are made in parallel.
+/// A clip has `frames` frames, `every` apart, of a random part of a motion. The cloth is simulated once for all views
+/// of an action, through all frames in between. The camera follows the person across the floor at constant height, so
+/// that the person fills the image everywhere. Views are spread evenly around the person from a random first one. The
+/// same bytes for any number of threads; clips are made in parallel.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +29,7 @@ struct MakeMultiPersonDatasetOptions {
   double shape_sigma = 1;
   ClothesStyle style = ClothesStyle::kPatterned;
   LightStyle light_style = LightStyle::kStudio;
-  int samples = 2;  ///< a pixel along x and y
+  int samples = 2;  ///< per pixel along x and y
   uint64_t seed = 1;
   int num_threads = 0;                        ///< 0: all cores
   std::string command;                        ///< information for people.json
@@ -40,8 +39,8 @@ struct MakeMultiPersonDatasetOptions {
 
 struct MakeMultiPersonDatasetSummary {
   bool finished = false;  ///< false: stopped by `progress`
-  int pictures = 0;
-  /// Of one person in two different frames, by the number of ordered pairs that training may draw.
+  int images = 0;
+  /// Number of ordered pairs of two different frames of one person that training may draw.
   int64_t pairs = 0;
   double seconds = 0;
 };

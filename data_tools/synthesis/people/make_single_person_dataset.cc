@@ -26,10 +26,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Frames that are drawn while the cloth of the next ones is computed.
+/// Frames that are rendered while the cloth of the next ones is computed.
 constexpr int kFramesAChunk = 16;
 
-/// Renderers for whoever needs one: they keep memory, so threads take turns with few instead of making many.
+/// Pool of renderers, which are reused by threads because they keep memory.
 class RendererPool {
  public:
   explicit RendererPool(const DressedScene& scene) : scene_(scene) {}
@@ -128,7 +128,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
       T > 1 && motion.timestamps[1] > motion.timestamps[0] ? 1 / (motion.timestamps[1] - motion.timestamps[0]) : 30;
   info.seed = options.seed, info.garment = ToString(options.garment);
   info.motion = options.motion, info.command = options.command;
-  const DressedPerson person(body, track.motion.betas, options.garment, options.seed, options.style, options.stuff);
+  const DressedPerson person(body, track.motion.betas, options.garment, options.seed, options.style, options.material);
   info.has.iuv = body.has_parts() && body.data().face_iuv.rows() > 0;
   const SinglePersonDatasetWriter writer(folder, info, track);
   const DressedScene scene(
@@ -136,7 +136,7 @@ MakeSinglePersonDatasetSummary MakeSinglePersonDataset(const std::string& folder
       LightOfSeed(camera.up_in_camera, options.light_style, options.light_seed.value_or(options.seed)));
   ClothRunOptions run_options;
   run_options.up = camera.up_in_camera;
-  run_options.cloth = MovedAs(options.stuff, run_options.cloth);
+  run_options.cloth = ClothOptionsFor(options.material, run_options.cloth);
   ClothRun run(person, track.motion, run_options);
 
   MakeSinglePersonDatasetSummary summary;

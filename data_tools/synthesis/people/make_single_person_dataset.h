@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Makes a single-person dataset (single_person_dataset.h) from a motion: the seed makes the person (shape, clothes,
-/// colours), the light and the background; the motion makes it move.
+/// Makes a single-person dataset (single_person_dataset.h) from a motion: the seed determines the person (shape,
+/// clothes, colours), the light and the background.
 ///
-/// The cloth runs frame after frame on one thread while the frames before are drawn on the others, so memory does not
-/// grow with the length of the motion. The same bytes for any number of threads.
+/// The cloth is simulated on one thread while earlier frames are rendered on the others, so memory does not grow with
+/// the length of the motion. The same bytes for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -25,15 +25,15 @@ namespace bodyloom {
 struct MakeSinglePersonDatasetOptions {
   GarmentKind garment = GarmentKind::kSkirt;
   ClothesStyle style = ClothesStyle::kPatterned;
-  ClothStuff stuff = ClothStuff::kCotton;  ///< of a loose garment
+  ClothMaterial material = ClothMaterial::kCotton;  ///< of a loose garment
   uint64_t seed = 1;
   LightStyle light_style = LightStyle::kStudio;
-  std::optional<uint64_t> light_seed;  ///< of the light alone: the same person in another light; absent: `seed`
+  std::optional<uint64_t> light_seed;  ///< of the light alone, to vary it for one person; absent: `seed`
   int size_px = 256;                   ///< images are square
   double yaw_deg = 0;                  ///< of the camera, about the vertical
   double elevation_deg = 8;
   double shape_sigma = 0.5;     ///< standard deviation of the body's shape components, cut at 2; 0: the mean shape
-  int samples = 2;              ///< a pixel along x and y
+  int samples = 2;              ///< per pixel along x and y
   int num_threads = 0;          ///< 0: all cores
   std::string motion, command;  ///< information for person.json
   std::function<bool(double)> progress = {};               ///< called with the finished fraction; false: stop
@@ -44,8 +44,8 @@ struct MakeSinglePersonDatasetOptions {
 struct MakeSinglePersonDatasetSummary {
   bool finished = false;  ///< false: stopped by `progress`, or failed
   int frames = 0, cuts = 0, cloth_vertices = 0;
-  int frames_through = 0;                 ///< in which a leg has come through the cloth
-  double seconds = 0, cloth_seconds = 0;  ///< wall time; of it in the cloth (beside drawing)
+  int frames_through = 0;                 ///< frames in which a leg has come through the cloth
+  double seconds = 0, cloth_seconds = 0;  ///< wall time; part of it in the cloth (parallel to rendering)
   double largest_stretch = 0;             ///< of the cloth's threads, over all frames
   PersonLight light;
   [[nodiscard]] double frames_per_second() const { return seconds > 0 ? frames / seconds : 0; }
@@ -54,7 +54,7 @@ struct MakeSinglePersonDatasetSummary {
 /// Shape components of the person of a seed.
 Eigen::VectorXd PersonBetas(const BodyModel& body, double sigma, uint64_t seed);
 
-/// A motion in the camera's frame as a track without error: every frame tracked, joints and landmarks where they are.
+/// A motion in the camera's frame as a track without error: every frame tracked, with exact joints and landmarks.
 Track TrueTrack(const BodyModel& body, const Motion& in_camera, const Camera& camera);
 
 /// The true track of a motion (world frame) of that body, and the camera: static, the whole motion in view.

@@ -142,8 +142,7 @@ void Outfit::CutEveryday(uint64_t seed, const MatrixX3d& joints) {
   }
 }
 
-/// Distance (about) from the edge of the hair that hangs down the back, positive inside; nobody's is where it is not
-/// long.
+/// Distance (about) from the edge of the hair that hangs down the back, positive inside; empty if it is not long.
 double Outfit::LongHairDepth(const Vector3d& p) const {
   const double above_round_end = std::min(0.0, p.y() - cut_.long_hair_y - cut_.long_hair_x);
   return std::min(cut_.neck_z - p.z(), cut_.long_hair_x - std::hypot(p.x(), above_round_end));

@@ -45,8 +45,8 @@ PersonLight StudioLight(const AroundPerson& around, HashRandom* random) {
 PersonLight NaturalLight(const AroundPerson& around, HashRandom* random) {
   PersonLight light;
   const double hardness = random->Uniform();  // 0: an overcast sky, 1: the sun
-  constexpr double kBehindCamera = std::numbers::pi, kMostBeside = 2.4;
-  const double key = kBehindCamera + random->Uniform(-kMostBeside, kMostBeside),
+  constexpr double kBehindCamera = std::numbers::pi, kMaxBeside = 2.4;
+  const double key = kBehindCamera + random->Uniform(-kMaxBeside, kMaxBeside),
                fill = random->Uniform(0, 2 * std::numbers::pi);
   const double key_height = random->Uniform(0.15, 1.35), fill_height = random->Uniform(-0.2, 0.8);
   light.towards = {around.At(key, key_height), around.At(fill, fill_height)};

@@ -20,7 +20,7 @@ Vector3f FromHsv(double hue, double saturation, double value) {
   return {channel(5), channel(3), channel(1)};
 }
 
-/// Uniform in it; a single value costs no number.
+/// Uniform in it; a single value uses no random number.
 struct Shades {
   double low, high = low;
   double Draw(HashRandom* random) const { return low < high ? random->Uniform(low, high) : low; }
@@ -177,7 +177,7 @@ void Wardrobe::DressEveryday(GarmentKind garment, uint64_t seed) {
     p.print = {neck - unit * Vector3f(half_width, from_neck + height, 0),
                neck + unit * Vector3f(half_width, -from_neck, 1)};
   };
-  // Cloth that is sewn apart has other coordinates than the body, where a print would land anywhere.
+  // A loose garment has other coordinates than the body, in which the print's position would be arbitrary.
   const double prints = garment == GarmentKind::kCoat ? 0.6 : 0.7;
   dress(PersonLabel::kTop, {0.6, prints, 0.82, 0.9, 0.94});
   dress(PersonLabel::kBottom, {0.75, 0.75, 0.82, 0.9, 0.93});

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Colours and patterns of a synthetic person, fixed to the surface: stripes, checks, dots and noise as functions of
-/// the place on the template (or on the cloth as sewn), distinct for every label and chosen by a seed.
+/// the position on the template (or on the cloth as sewn), distinct for every label and chosen by a seed.
 ///
-/// Patterned clothes (ClothesStyle): top and bottom are plain for one person in five each, else of two different
-/// patterns. Everyday clothes: three tops in five and three bottoms in four are plain but for how cloth fades; a tenth
-/// of the tops has a print on the chest; half of all are black, grey or white, a third of the bottoms blue as denim.
-/// Seams, collars, knit and the like: clothes_details.h.
+/// Patterned clothes (ClothesStyle): top and bottom are each plain with probability 1/5, else of two different
+/// patterns. Everyday clothes: three tops in five and three bottoms in four are plain apart from fading; a tenth of the
+/// tops has a print on the chest; half of all are black, grey or white, a third of the bottoms blue as denim. Seams,
+/// collars, knit and the like: clothes_details.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ struct SurfacePattern {
   PatternKind kind = PatternKind::kPlain;
   Eigen::Vector3f colour = Eigen::Vector3f::Constant(128), other = colour;  ///< red, green, blue, 0…255
   float cell_m = 0.05F;                                                     ///< period / 2
-  int axis = 1;                                                             ///< stripes: coordinate that they count
+  int axis = 1;                                                             ///< stripes: axis across them
   uint64_t seed = 0;                                                        ///< noise, print
   Eigen::AlignedBox3f print;  ///< print: noise of both colours in here, plain elsewhere
   [[nodiscard]] Eigen::Vector3f At(const Eigen::Vector3f& place_m) const;
@@ -36,12 +36,12 @@ float ValueNoise(const Eigen::Vector3f& p, uint64_t seed);
 
 class Wardrobe {
  public:
-  /// `around_m`: after which the loose garment's pattern meets itself (its period is made to divide it); 0: none.
+  /// `around_m`: circumference after which the loose garment's pattern repeats (a multiple of its period); 0: none.
   Wardrobe(const Outfit& outfit, double around_m, uint64_t seed);
 
-  /// Colour (red, green, blue, 0…255) of a place of the body's surface with that label.
+  /// Colour (red, green, blue, 0…255) of a point of the body's surface with that label.
   [[nodiscard]] Eigen::Vector3f OfBody(PersonLabel label, const Eigen::Vector3f& on_template) const;
-  /// Colour of a place of the loose garment (way around, path down, 0).
+  /// Colour of a point of the loose garment (circumference, distance down, 0).
   [[nodiscard]] Eigen::Vector3f OfGarment(const Eigen::Vector3f& pattern_m) const;
   [[nodiscard]] const SurfacePattern& of_label(PersonLabel label) const { return patterns_[size_t(label)]; }
 

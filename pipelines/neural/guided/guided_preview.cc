@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<Colour, 6> kViewColours = {
     {{230, 60, 60}, {60, 160, 230}, {80, 200, 90}, {240, 180, 40}, {180, 80, 220}, {60, 210, 200}}};
 
-Image OriginPicture(const CoherentMaps& maps, int num_photos) {
+Image OriginImage(const CoherentMaps& maps, int num_photos) {
   Image image(maps.size, maps.size);
   for (size_t i = 0; i < maps.from.size(); ++i) {
     const int number = maps.from[i] - 1;
@@ -30,15 +30,15 @@ Image OriginPicture(const CoherentMaps& maps, int num_photos) {
 
 }  // namespace
 
-Image GuidedMapsSheet(const CoherentMaps& maps, std::span<const PersonPicture> virtual_pictures, int num_photos) {
-  std::vector<Image> pictures = {PictureOf(maps.appearance, maps.size, maps.size),
-                                 LabelsPicture(maps.labels, maps.size, maps.size), OriginPicture(maps, num_photos)};
-  for (const PersonPicture& p : virtual_pictures) pictures.push_back(PictureOf(p.image, p.size, p.size));
-  for (const PersonPicture& p : virtual_pictures) pictures.push_back(LabelsPicture(p.labels, p.size, p.size));
+Image GuidedMapsSheet(const CoherentMaps& maps, std::span<const RenderedPerson> virtual_images, int num_photos) {
+  std::vector<Image> images = {ImageFromPlanes(maps.appearance, maps.size, maps.size),
+                               LabelsImage(maps.labels, maps.size, maps.size), OriginImage(maps, num_photos)};
+  for (const RenderedPerson& p : virtual_images) images.push_back(ImageFromPlanes(p.image, p.size, p.size));
+  for (const RenderedPerson& p : virtual_images) images.push_back(LabelsImage(p.labels, p.size, p.size));
   ContactSheetOptions options;
   options.columns = 3;
   options.cell_height_px = maps.size;
-  return ContactSheet(pictures, options);
+  return ContactSheet(images, options);
 }
 
 }  // namespace bodyloom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pictures to judge the pose-guided renderer by.
+/// Pictures for visual inspection of the pose-guided renderer.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace bodyloom {
 
-/// Appearance, labels and where texels are from (photos in greys, what was made up in colours, empty black); below, the
-/// virtual views' pictures, then their labels.
-Image GuidedMapsSheet(const CoherentMaps& maps, std::span<const PersonPicture> virtual_pictures, int num_photos);
+/// Appearance, labels and sources of the texels (photos in greys, synthesised ones in colours, empty black); below, the
+/// images of the virtual views, then their labels.
+Image GuidedMapsSheet(const CoherentMaps& maps, std::span<const RenderedPerson> virtual_images, int num_photos);
 
 }  // namespace bodyloom

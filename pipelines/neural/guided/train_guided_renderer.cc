@@ -41,10 +41,10 @@ int ReachOf(const PhotoSource& people) { return std::min(PhotoReach(people, Ever
 
 std::vector<Image> RowOf(const GuidedPreview& p) {
   const int S = p.truth.size;
-  return {PictureOf(p.source.image, S, S),      PictureOf(p.pseudo.image, S, S),
-          PictureOf(p.picture.image, S, S),     PictureOf(p.truth.image, S, S),
-          LabelsPicture(p.pseudo.labels, S, S), LabelsPicture(p.picture.labels, S, S),
-          LabelsPicture(p.truth.labels, S, S)};
+  return {ImageFromPlanes(p.source.image, S, S),   ImageFromPlanes(p.pseudo.image, S, S),
+          ImageFromPlanes(p.rendered.image, S, S), ImageFromPlanes(p.truth.image, S, S),
+          LabelsImage(p.pseudo.labels, S, S),      LabelsImage(p.rendered.labels, S, S),
+          LabelsImage(p.truth.labels, S, S)};
 }
 
 }  // namespace
@@ -72,9 +72,9 @@ TrainGuidedSummary TrainGuidedRenderer(const TrainGuidedRendererRequest& request
   run.notes = Notes(request.data, options);
   options.config_json = GuidedRunJson(run);
   WriteRunConfig(options);
-  callbacks.Say(Concatenate(people.train.source().num_frames.size(), " people to train on, ",
-                            options.validation.num_frames.size(), " kept for validation; profile ", profile.name,
-                            "; clothes reach ", run.reach, " px beyond the body"));
+  callbacks.Message(Concatenate(people.train.source().num_frames.size(), " people to train on, ",
+                                options.validation.num_frames.size(), " kept for validation; profile ", profile.name,
+                                "; clothes reach ", run.reach, " px beyond the body"));
 
   FollowTraining(options.steps, callbacks, &options);
   options.preview = [&](int step, const std::vector<GuidedPreview>& previews) {

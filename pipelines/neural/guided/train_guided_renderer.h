@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the pose-guided renderer from files: what `bodyloom train guided` does.
+/// Trains the pose-guided renderer from files; implements `bodyloom train guided`.
 #pragma once
 
 #include "geometry/base/callbacks.h"
@@ -8,12 +8,13 @@
 
 namespace bodyloom {
 
-/// Of `weights`: vgg16, alexnet, lpips_alex, vgg19.
+/// Request; uses vgg16, alexnet, lpips_alex and vgg19 of `weights`.
 using TrainGuidedRendererRequest = TrainOnPeopleRequest<TrainGuidedOptions>;
 
-/// A run that was stopped ends with its checkpoint and says so (TrainingStatus::kStopped). Throws RequestError for a
-/// run that is or is not there, std::runtime_error for files that cannot be used and when a loss is not finite.
-/// Previews, a row a picture: source, what is known of the target, result and truth, then labels known, made and true.
+/// Trains or resumes a run. A stopped run ends with its checkpoint and status TrainingStatus::kStopped. Throws
+/// RequestError when a run unexpectedly exists or is missing, std::runtime_error for files that cannot be used and when
+/// a loss is not finite. Previews have one row per image: source, known part of the target, result and truth, then
+/// known, generated and true labels.
 TrainGuidedSummary TrainGuidedRenderer(const TrainGuidedRendererRequest& request, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

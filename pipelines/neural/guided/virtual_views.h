@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The six views of a body in T-pose over which the pose-guided renderer completes its maps.
+/// The six virtual views of a body in T-pose on which the pose-guided renderer completes its maps.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ namespace bodyloom {
 /// its front, back, left, right, top and bottom (neural/guided/complete_maps.h, VirtualView).
 Track VirtualViewTrack(const BodyModel& body, const Eigen::VectorXd& betas);
 
-/// Its frames, in windows of size × size pixels with maps of texture_size × texture_size texels.
+/// Frames of VirtualViewTrack(), in windows of size × size pixels with maps of texture_size × texture_size texels.
 std::vector<PhotoFrame> VirtualViews(const BodyModel& body, const Eigen::VectorXd& betas, int size, int texture_size);
 
 }  // namespace bodyloom

@@ -88,7 +88,7 @@ void RequireSameSizes(const LifterWeights& weights, const TrainLifterOptions& op
                                        " of the same dilations: set --channels to that of the weights"));
 }
 
-/// What a run that is there began with, as its config.json has it; empty: nothing, or no such run.
+/// Initial weights of an existing run by its config.json; empty: none, or no such run.
 std::string InitFromOfRun(const std::string& run) {
   const fs::path path = fs::path(run) / "config.json";
   if (!fs::exists(path)) return "";
@@ -154,9 +154,9 @@ TrainLifterNetworkSummary TrainLifterNetwork(const TrainLifterNetworkRequest& re
   WriteFileAtomically((fs::path(request.out) / "config.json").string(), config.dump(2) + "\n");
   WriteFileAtomically((fs::path(request.out) / "motion_split.txt").string(),
                       request.split.empty() ? BuiltinMotionSplitText() : ReadFileBytes(request.split));
-  callbacks.Say(Concatenate("training on ", train.motions.size(), " clips, ", train.seconds / 60,
-                            " minutes; validating on ", test.motions.size(), " clips, ", test.seconds / 60,
-                            " minutes"));
+  callbacks.Message(Concatenate("training on ", train.motions.size(), " clips, ", train.seconds / 60,
+                                " minutes; validating on ", test.motions.size(), " clips, ", test.seconds / 60,
+                                " minutes"));
   FollowTraining(options.steps, callbacks, &options);
   TrainLifterResult result = TrainLifter(SourceOf(train_windows), SourceOf(test_windows), options);
   RequireFinite(result.summary, request.out);

@@ -53,7 +53,7 @@ void CheckRequest(const AnimateMotionRequest& request) {
   RequireReadable(request.like, "single-person dataset or track");
   if (request.set.empty()) return;
   RequireWritableFolder(request.set);
-  if (!request.view_yaw.empty()) throw RequestError("--set writes the track beside the pictures: not with --view-yaw");
+  if (!request.view_yaw.empty()) throw RequestError("--set writes the track beside the images: not with --view-yaw");
   RequireDistinct({request.data, request.like}, {request.set});
 }
 
@@ -91,24 +91,24 @@ std::vector<float> SimilarityTo(const AnimateMotionRequest& request, const Track
   }
 }
 
-/// What is opened once and used by every stage.
+/// Resources that are opened once and used by all stages.
 class MotionAnimation : public FramePainter {
  public:
   MotionAnimation(const AnimateMotionRequest& request, const PipelineCallbacks& callbacks)
       : request_(request), callbacks_(callbacks), scored_(ClipOf(request).IsScored()) {
     // The report names all stages in this order, whichever comes first or not at all.
-    for (const char* stage : {kPrepare, kLight, kMaps, kNetwork, kCompose}) clock_.Book(stage);
+    for (const char* stage : {kPrepare, kLight, kMaps, kNetwork, kCompose}) clock_.Record(stage);
   }
 
   AnimateMotionSummary Run() {
     CheckRequest(request_);
     OpenRun();
     OpenClip();
-    clock_.Book(kPrepare);
+    clock_.Record(kPrepare);
     if (relighter_ && relighter_->wants_frames()) EstimateLight();
-    clock_.Book(kLight);
+    clock_.Record(kLight);
     AnimateMotionSummary summary = RenderFrames();
-    WriteSheet(request_.sheet, sheet_, sheet_columns_, clip_->frames().window().picture_height);
+    WriteSheet(request_.sheet, sheet_, sheet_columns_, clip_->frames().window().image_height);
     if (!request_.frames.empty()) scorer_->errors().WriteCsv(request_.frames);
     WriteReport(request_.json, Report(summary));
     summary.total_seconds = clock_.total();
@@ -120,9 +120,9 @@ class MotionAnimation : public FramePainter {
   double Paint(int t, Image* composed) override {
     clip_->Fill(t, &frame_);
     ForgetAcrossCuts(t, renderer_.get());
-    clock_.Book(kMaps);
+    clock_.Record(kMaps);
     shown_ = renderer_->Next(frame_);
-    const double network_s = clock_.Book(kNetwork);
+    const double network_s = clock_.Record(kNetwork);
     if (scorer_) scorer_->AddWindow(t, renderer_->last_scores());
     if (request_.true_normals) shown_.normals = frame_.normals;
     if (relighter_) relighter_->Apply(&shown_);
@@ -133,16 +133,16 @@ class MotionAnimation : public FramePainter {
 
   std::vector<Image> ForSheet(int /*t*/, bool painted, const Image& composed) override {
     if (!painted) return {};
-    std::vector<Image> pictures = {composed};
+    std::vector<Image> images = {composed};
     const int width = shown_.width, height = shown_.height;
-    if (!shown_.labels.empty()) pictures.push_back(LabelsPicture(shown_.labels, width, height));
-    if (!shown_.normals.empty()) pictures.push_back(NormalPicture(shown_.normals, width, height));
-    return pictures;
+    if (!shown_.labels.empty()) images.push_back(LabelsImage(shown_.labels, width, height));
+    if (!shown_.normals.empty()) images.push_back(NormalImage(shown_.normals, width, height));
+    return images;
   }
 
   void Written(int t, bool painted, const Image& composed) override {
-    if (set_) set_->Add(t, painted ? shown_ : MotionPicture(), clip_->frames().window(), composed);
-    clock_.Book(kCompose);
+    if (set_) set_->Add(t, painted ? shown_ : MotionImage(), clip_->frames().window(), composed);
+    clock_.Record(kCompose);
   }
 
   [[nodiscard]] int FramesBefore() const override { return light_frames_; }
@@ -160,16 +160,15 @@ class MotionAnimation : public FramePainter {
     clip_ = std::make_unique<AnimatedClip>(ClipOf(request_), run_);
     SayLines(clip_->notes(), callbacks_);
     const PersonWindow& window = clip_->frames().window();
-    if (std::max({window.width, window.height, window.picture_width, window.picture_height}) > kLargestSide) {
-      throw std::runtime_error(Concatenate(request_.track,
-                                           ": at the size that the person was trained at the picture would have ",
-                                           window.picture_width, "x", window.picture_height, " px, at most ",
-                                           kLargestSide, " a side; the track's person is too small in its picture"));
+    if (std::max({window.width, window.height, window.image_width, window.image_height}) > kLargestSide) {
+      throw std::runtime_error(Concatenate(
+          request_.track, ": at the size that the person was trained at the image would have ", window.image_width, "x",
+          window.image_height, " px, at most ", kLargestSide, " a side; the track's person is too small in its image"));
     }
     if (!scored_ &&
         !(request_.like.empty() && request_.frames.empty() && request_.weights.empty() && request_.iuv.empty())) {
       throw RequestError(
-          "--like, --frames, --weights and --iuv compare with the pictures of --data: not without it, nor with "
+          "--like, --frames, --weights and --iuv compare with the images of --data: not without it, nor with "
           "--view-yaw, --freeze or --speed");
     }
     if (request_.true_normals && !(relighter_ && scored_)) {
@@ -184,7 +183,7 @@ class MotionAnimation : public FramePainter {
   [[nodiscard]] std::unique_ptr<MotionRenderer> OpenRenderer(bool score) const {
     MotionRendererOptions options;
     options.warmup_iterations = request_.warmup;
-    options.reach = run_.reach, options.anywhere = request_.anywhere;
+    options.reach = run_.reach, options.whole_window = request_.whole_window;
     options.num_threads = ThreadsFor(request_.threads), options.device = request_.device;
     options.score = score;
     if (score) {
@@ -195,7 +194,7 @@ class MotionAnimation : public FramePainter {
     return std::make_unique<MotionRenderer>(CheckpointPath(request_.run), run_.config, options);
   }
 
-  /// What the networks need of frame t, and its true normals where those are wanted.
+  /// Fills the networks' input of frame t, and its true normals if requested.
   void FillWithNormals(int t, MotionFrame* frame) const {
     if (request_.true_normals) {
       clip_->Fill(t, frame);
@@ -214,9 +213,9 @@ class MotionAnimation : public FramePainter {
       if (!clip_->track().HasResult(t)) continue;
       FillWithNormals(t, &frame);
       ForgetAcrossCuts(t, renderer.get());
-      MotionPicture picture = renderer->Next(frame);
-      if (request_.true_normals) picture.normals = frame.normals;
-      relighter_->Observe(picture);
+      MotionImage image = renderer->Next(frame);
+      if (request_.true_normals) image.normals = frame.normals;
+      relighter_->Observe(image);
     }
     relighter_->Estimate();
   }
@@ -224,12 +223,12 @@ class MotionAnimation : public FramePainter {
   AnimateMotionSummary RenderFrames() {
     const Track& track = clip_->track();
     const PersonWindow& window = clip_->frames().window();
-    const PictureSize picture = SizeOfPictures(window, track.camera, request_.full_size);
-    background_.emplace(request_.background, picture.width, picture.height);
+    const ImageSize image = SizeOfImages(window, track.camera, request_.full_size);
+    background_.emplace(request_.background, image.width, image.height);
     const double own_fps = FrameRateWithoutGaps(track.motion), fps = own_fps > 0 ? own_fps : run_.fps;
     if (scored_) {
       scorer_ = std::make_unique<ClipScorer>(SimilarityTo(request_, track, run_),
-                                             request_.background.empty() ? "" : request_.data, picture);
+                                             request_.background.empty() ? "" : request_.data, image);
     }
     if (!request_.set.empty()) {
       set_ = std::make_unique<RenderedDataset>(request_.set, track, fps, run_.config.shape, run_.config.normals,
@@ -237,13 +236,13 @@ class MotionAnimation : public FramePainter {
     }
     AnimateMotionSummary summary;
     static_cast<AnimationSummary&>(summary) =
-        WriteAnimation(request_, track, picture, fps, callbacks_, this, &sheet_, &sheet_columns_);
+        WriteAnimation(request_, track, image, fps, callbacks_, this, &sheet_, &sheet_columns_);
     if (set_) set_->Finish();
-    clock_.Book(kCompose);
+    clock_.Record(kCompose);
     summary.seconds = clock_.seconds();
     summary.written = FilesAmong({request_.out, request_.set, request_.sheet, request_.frames, request_.json});
     summary.window_width = window.width, summary.window_height = window.height;
-    summary.shrunk_width = window.picture_width, summary.shrunk_height = window.picture_height;
+    summary.shrunk_width = window.image_width, summary.shrunk_height = window.image_height;
     summary.descriptors_kept = renderer_->descriptors_kept();
     summary.projections_kept = renderer_->projections_kept();
     if (relighter_ && relighter_->wants_frames()) summary.light = relighter_->summary();
@@ -279,8 +278,8 @@ class MotionAnimation : public FramePainter {
   std::unique_ptr<ClipScorer> scorer_;
   std::optional<Background> background_;
   std::unique_ptr<RenderedDataset> set_;
-  MotionFrame frame_;    ///< painted last
-  MotionPicture shown_;  ///< of it
+  MotionFrame frame_;  ///< painted last
+  MotionImage shown_;  ///< of it
   std::vector<Image> sheet_;
   int light_frames_ = 0, sheet_columns_ = 1;
 };

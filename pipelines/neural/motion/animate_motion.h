@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Renders a person that the motion-dependent renderer learned, in any motion: what `bodyloom animate motion` does.
+/// Renders a person with a trained motion-dependent renderer in any motion; implements `bodyloom animate motion`.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@ namespace bodyloom {
 
 /// One of `track` and `data` is given.
 struct AnimateMotionRequest : AnimationRequest {
-  std::string data;      ///< a dataset of the same person: its motion is shown and, unless the view is turned, time
-                         ///< stands still or the speed is another, the result compared with its pictures
-  std::string iuv;       ///< with `data`: what its pixels show of the body (MotionDataRequest::iuv)
-  std::string view_yaw;  ///< degrees that the view is turned by: "30", or "0:360" over the clip
-  double speed = 1;      ///< the motion is played so many times as fast
+  std::string data;             ///< a dataset of the same person: its motion is shown and the result compared with its
+                                ///< images, unless the view is turned, frames are frozen or the speed differs
+  std::string iuv;              ///< with `data`: what its pixels show of the body (MotionDataRequest::iuv)
+  std::string view_yaw;         ///< rotation of the view, degrees: "30", or "0:360" over the clip
+  double speed = 1;             ///< playback speed factor
   bool shape_of_track = false;  ///< poses the track's shape, not that of the person who was trained on
-  std::string freeze;           ///< "FRAME:COUNT": that frame is shown so many times more; empty: none is
+  std::string freeze;           ///< "FRAME:COUNT": repeats the frame COUNT times; empty: none
   std::string background;       ///< an image, a video or a folder behind the person; empty: a plain backdrop
-  std::string relight;          ///< the light that shall be (pipelines/animate/relight_frames.h); empty: as it is
-  bool true_normals = false;    ///< with `relight` and `data`: by the normals of `data`, not the networks'
-  int warmup = 50;              ///< passes of the first frame through the network before it counts
-  bool without_past = false;    ///< every frame as if it were the first
-  bool anywhere = false;        ///< the person may be farther from the body than clothes ever were in training
+  std::string relight;          ///< new light (pipelines/animate/relight_frames.h); empty: unchanged
+  bool true_normals = false;    ///< with `relight` and `data`: use the normals of `data`, not the networks'
+  int warmup = 50;              ///< warm-up passes of the first frame through the network
+  bool without_past = false;    ///< treat every frame as the first
+  bool whole_window = false;    ///< the person may be farther from the body than clothes ever were in training
   std::string like;             ///< with `data`: a dataset or track whose motion each frame's is compared with; of the
                                 ///< data that the run was trained on, the frames that it was trained on
   std::string frames;           ///< with `data`: a CSV to write, a line a frame (MotionErrors)
@@ -37,15 +37,15 @@ struct AnimateMotionRequest : AnimationRequest {
 };
 
 struct AnimateMotionSummary : AnimationSummary {
-  int window_width = 0, window_height = 0;             ///< pixels that the networks draw
-  int shrunk_width = 0, shrunk_height = 0;             ///< of the whole picture at the networks' size
-  int64_t descriptors_kept = 0, projections_kept = 0;  ///< frames that did not move (MotionRenderer)
-  std::optional<FitLightingSummary> light;             ///< of the clip, where it was looked for
-  std::optional<ClipScores> scores;                    ///< against the pictures of `data`
+  int window_width = 0, window_height = 0;             ///< of the networks' output, pixels
+  int shrunk_width = 0, shrunk_height = 0;             ///< of the whole image at the networks' scale
+  int64_t descriptors_kept = 0, projections_kept = 0;  ///< reused in frames without motion (MotionRenderer)
+  std::optional<FitLightingSummary> light;             ///< of the clip, if it was estimated
+  std::optional<ClipScores> scores;                    ///< against the images of `data`
 };
 
-/// Throws RequestError for a request that contradicts itself, std::runtime_error for files that cannot be used,
-/// Cancelled. The stages of `callbacks` are "light", where the clip's light is looked for, and "rendering".
+/// Renders the request's frames. Throws RequestError for a contradictory request, std::runtime_error for files that
+/// cannot be used, Cancelled. The stages of `callbacks` are "light", if the clip's light is estimated, and "rendering".
 AnimateMotionSummary AnimateMotion(const AnimateMotionRequest& request, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

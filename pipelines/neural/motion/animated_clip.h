@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The clip that the motion-dependent renderer animates: a track, or a single-person dataset whose pictures the result
-/// is compared with.
+/// The clip that the motion-dependent renderer animates: a track, or a single-person dataset whose images the result is
+/// compared with.
 #pragma once
 
 #include <memory>
@@ -22,34 +22,33 @@ struct AnimatedClipRequest {
   std::string body;      ///< the track's body; empty: the built-in body
   std::string iuv;       ///< with `data`: as MotionDataRequest::iuv
   std::string view_yaw;  ///< how far the view is turned (pipelines/animate/animation_limits.h)
-  std::string freeze;    ///< where time stands still (pipelines/animate/animation_limits.h); empty: nowhere
-  double speed = 1;      ///< the motion is played so many times as fast
-  /// The track's own shape is posed instead of that of the run's person (geometry/scene/track_edits.h).
+  std::string freeze;    ///< frames shown repeatedly (pipelines/animate/animation_limits.h); empty: none
+  double speed = 1;      ///< playback speed factor
+  /// Use the track's own shape instead of that of the run's person (geometry/scene/track_edits.h).
   bool shape_of_track = false;
   int threads = 1;
 
-  /// Whether the result is compared with the pictures of `data`: from another side or in another time there is nothing
-  /// to compare with.
+  /// True if the result is compared with the images of `data`, which needs the original view and timing.
   [[nodiscard]] bool IsScored() const { return !data.empty() && view_yaw.empty() && freeze.empty() && speed == 1; }
 };
 
 class AnimatedClip {
  public:
-  /// At the size that the person of `run` was trained at, and at the run's frame rate, which its networks' past has: a
-  /// track at another is resampled (data_tools/motion/resample_track.h), a clip to be scored refused. The body has that
-  /// person's shape, whosever motion it is, unless the clip is scored (the person's pictures come with their own
-  /// track), the request says otherwise or the run does not hold it. Throws std::runtime_error naming the file that
-  /// cannot be used or has nothing to animate, RequestError for `view_yaw` and `freeze`.
+  /// Prepares the clip at the scale of the person in training and at the run's frame rate, as the network's input
+  /// includes past frames: a track at another rate is resampled (data_tools/motion/resample_track.h), a clip to be
+  /// scored is rejected. The body has the shape of the run's person, unless the clip is scored (its images come with
+  /// their own track), the request says otherwise or the run does not store it. Throws std::runtime_error naming the
+  /// file that cannot be used or has nothing to animate, RequestError for `view_yaw` and `freeze`.
   AnimatedClip(const AnimatedClipRequest& request, const MotionRun& run);
 
-  /// Frames are those shown: one shown again counts again.
+  /// Frames as shown; repeated frames count repeatedly.
   [[nodiscard]] const Track& track() const { return data_ ? data_->track() : own_frames_->track(); }
   [[nodiscard]] const PersonFrames& frames() const { return data_ ? data_->frames() : *own_frames_; }
-  /// Lines for the user: the rate and the shape that are not the track's own.
+  /// Lines for the user about a rate and shape other than the track's.
   [[nodiscard]] const std::string& notes() const { return notes_; }
-  /// Whether Fill() gives normals.
+  /// True if Fill() gives normals.
   [[nodiscard]] bool has_normals() const { return data_ && data_->has_normals(); }
-  /// What the network takes of frame t; with its truth where the clip is scored.
+  /// Fills the network's input of frame t, with the truth if the clip is scored.
   void Fill(int t, MotionFrame* frame) const;
   /// The same without the truth.
   void FillMotion(int t, MotionFrame* frame) const;
@@ -59,7 +58,7 @@ class AnimatedClip {
 
   std::unique_ptr<MotionData> data_;
   std::shared_ptr<const BodyModel> body_;
-  std::optional<Track> own_track_;  ///< before anything is shown more than once
+  std::optional<Track> own_track_;  ///< before frames are repeated
   std::optional<PersonFrames> own_frames_;
   std::optional<DenseHistory> own_dense_;
   std::string notes_;

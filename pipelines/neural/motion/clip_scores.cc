@@ -31,9 +31,9 @@ nlohmann::ordered_json ToJson(const ClipScores& scores) {
   return json;
 }
 
-ClipScorer::ClipScorer(std::vector<float> similarity, const std::string& set, PictureSize picture)
+ClipScorer::ClipScorer(std::vector<float> similarity, const std::string& set, ImageSize image)
     : errors_(std::move(similarity)) {
-  if (!set.empty()) composed_.emplace(set, picture.width, picture.height);
+  if (!set.empty()) composed_.emplace(set, image.width, image.height);
 }
 
 void ClipScorer::AddComposed(int t, const Image& composed) {

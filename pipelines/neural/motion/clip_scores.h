@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A rendered clip against the pictures of the single-person dataset it was rendered for.
+/// Scores of a rendered clip against the images of the single-person dataset it was rendered for.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,31 +15,31 @@
 
 namespace bodyloom {
 
-/// What was measured; absent where it was not.
+/// Scores; absent where not measured.
 struct ClipScores {
-  MotionScores windows;                              ///< the person alone, in its window
-  std::vector<MotionErrors::Quarter> by_similarity;  ///< empty without a clip to be like
+  MotionScores windows;                              ///< of the person alone, in its window
+  std::vector<MotionErrors::Quarter> by_similarity;  ///< empty without a clip to compare the motion with
   struct Composed {
-    double psnr_db = 0;      ///< of the whole picture
+    double psnr_db = 0;      ///< of the whole image
     double rim_psnr_db = 0;  ///< within CompositeScore::kRimPixels of the person's contour
   };
   std::optional<Composed> composed;  ///< over the dataset's own backgrounds
 };
 
-/// Collects them frame by frame.
+/// Accumulates the scores frame by frame.
 class ClipScorer {
  public:
-  /// `similarity` by frame, or empty (MotionErrors). `set`: the single-person dataset whose whole pictures are
-  /// compared, empty: they are not. `picture`: the size of those written.
-  ClipScorer(std::vector<float> similarity, const std::string& set, PictureSize picture);
+  /// `similarity` by frame, or empty (MotionErrors). `set`: the single-person dataset whose whole images are compared;
+  /// empty: none. `image`: size of the images written.
+  ClipScorer(std::vector<float> similarity, const std::string& set, ImageSize image);
 
-  /// Frame t's window, as the renderer compared it.
+  /// Adds the scores of frame t's window.
   void AddWindow(int t, const MotionFrameScores& scores) { errors_.Add(t, scores); }
-  /// Frame t's whole picture.
+  /// Adds frame t's whole image.
   void AddComposed(int t, const Image& composed);
 
   [[nodiscard]] const MotionErrors& errors() const { return errors_; }
-  /// `windows`: those of the renderer, of the same frames.
+  /// Final scores; `windows`: the renderer's scores of the same frames.
   [[nodiscard]] ClipScores Scores(const MotionScores& windows) const;
 
  private:

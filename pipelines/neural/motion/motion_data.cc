@@ -19,7 +19,7 @@
 #include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
-/// The window's part of a frame's pictures.
+/// The window's part of a frame's images.
 struct MotionTruthFrame {
   Image image, normals;
   std::vector<uint8_t> labels;
@@ -153,7 +153,7 @@ class MotionData::Impl {
                             ": the later ones are not used\n");
     }
     if (width != track_.camera.width || height != track_.camera.height) {
-      throw std::runtime_error(Concatenate(track, ": made for pictures of ", track_.camera.width, "x",
+      throw std::runtime_error(Concatenate(track, ": made for images of ", track_.camera.width, "x",
                                            track_.camera.height, ", ", request.data, " has ", width, "x", height));
     }
   }
@@ -177,11 +177,11 @@ class MotionData::Impl {
   /// The parts that frame t's window shows.
   [[nodiscard]] std::vector<uint8_t> PartsIn(const PartLabelSequence& parts, int t) const {
     const LabelImage shown = parts.PartsOf(t);
-    Image picture(parts.image_width, parts.image_height);
-    for (int y = 0; y < picture.height; ++y) {
-      for (int x = 0; x < picture.width; ++x) picture.pixel(x, y)[0] = shown.At(x, y);
+    Image image(parts.image_width, parts.image_height);
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) image.pixel(x, y)[0] = shown.At(x, y);
     }
-    return CutLabels(picture, frames_->window(), t);
+    return CutLabels(image, frames_->window(), t);
   }
 
   /// Videos are read from the beginning: all windows are cut at once.
@@ -192,13 +192,13 @@ class MotionData::Impl {
     if (mask && !parts) notes_ += "the tracked body's parts, within the mask, stand in for a parsing of the clothes\n";
     if (has_outline_) notes_ += "the tracked body's normals stand in for those of the clothes\n";
     VideoReader video(request.data);
-    Image picture;
+    Image image;
     int t = 0;
-    for (; t < track_.num_frames() && video.Read(&picture); ++t) {
+    for (; t < track_.num_frames() && video.Read(&image); ++t) {
       const int promised = video.info().num_frames;  // 0 where the container does not say: counted below
-      if (t == 0) CheckSizes(request, promised > 0 ? promised : track_.num_frames(), picture.width, picture.height);
+      if (t == 0) CheckSizes(request, promised > 0 ? promised : track_.num_frames(), image.width, image.height);
       MotionTruthFrame cut;
-      cut.image = CutWindow(picture, frames_->window(), t);
+      cut.image = CutWindow(image, frames_->window(), t);
       if (has_outline_) {
         const std::vector<uint8_t> shown = parts ? PartsIn(*parts, t) : std::vector<uint8_t>();
         BodyTruth truth = BodyTruthOf(frames_->Surface(t), mask ? PartsIn(*mask, t) : shown, shown);
@@ -212,11 +212,11 @@ class MotionData::Impl {
   const MotionTruthFrame& CutAt(int t) {
     const std::lock_guard lock(mutex_);
     if (!cut_.at(t)) {
-      const PersonFrame picture = set_->Read(t, {true, true, false, false});
+      const PersonFrame image = set_->Read(t, {true, true, false, false});
       MotionTruthFrame cut;
-      cut.image = CutWindow(picture.rgb, frames_->window(), t);
-      if (!picture.labels.empty()) cut.labels = CutLabels(picture.labels, frames_->window(), t);
-      if (!picture.normals.empty()) cut.normals = CutWindow(picture.normals, frames_->window(), t);
+      cut.image = CutWindow(image.rgb, frames_->window(), t);
+      if (!image.labels.empty()) cut.labels = CutLabels(image.labels, frames_->window(), t);
+      if (!image.normals.empty()) cut.normals = CutWindow(image.normals, frames_->window(), t);
       cut_[t] = std::move(cut);
     }
     return *cut_[t];
@@ -263,7 +263,7 @@ std::string RateText(const Track& track) {
 void RequireRate(const Track& track, double fps, const std::string& data, const std::string& what_helps) {
   if (IsAtRate(track, fps)) return;
   throw std::runtime_error(
-      Concatenate(data, ": pictures at ", RateText(track), ", expected ", fps, " as in training; ", what_helps));
+      Concatenate(data, ": images at ", RateText(track), ", expected ", fps, " as in training; ", what_helps));
 }
 
 }  // namespace bodyloom

@@ -59,11 +59,11 @@ std::string Notes(const TrainMotionRendererRequest& request, const TrainMotionOp
 void LeaveOutUnknown(const MotionData& data, MotionConfig* config, const PipelineCallbacks& callbacks) {
   if (!data.has_labels() && config->shape) {
     config->shape = false;
-    callbacks.Say("no labels: trained without shape, on the whole window with its background");
+    callbacks.Message("no labels: trained without shape, on the whole window with its background");
   }
   if (!data.has_normals() && config->normals) {
     config->normals = false;
-    callbacks.Say("no normals: trained without them");
+    callbacks.Message("no normals: trained without them");
   }
 }
 
@@ -72,7 +72,7 @@ std::unique_ptr<MotionData> ValidationData(const TrainMotionRendererRequest& req
                                            const MotionData& data, const MotionConfig& config) {
   if (request.validate_data.empty()) return nullptr;
   if (!like.iuv.empty() && like.iuv != kOwnIuv) {
-    throw RequestError("--iuv DIR holds the pictures of --data alone: with --validate-data expected \"own\"");
+    throw RequestError("--iuv DIR holds the images of --data alone: with --validate-data expected \"own\"");
   }
   MotionDataRequest other = like;
   other.data = request.validate_data;
@@ -84,7 +84,7 @@ std::unique_ptr<MotionData> ValidationData(const TrainMotionRendererRequest& req
   return validation;
 }
 
-/// What it takes to use the checkpoint.
+/// Run description, with everything needed to use the checkpoint.
 MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOptions& options, const MotionData& data) {
   MotionRun run;
   run.config = options.config;
@@ -100,7 +100,7 @@ MotionRun RunOf(const TrainMotionRendererRequest& request, const TrainMotionOpti
 }
 
 void SayWhatIsTrained(const MotionRun& run, const PersonWindow& window, const PipelineCallbacks& callbacks) {
-  callbacks.Say(Concatenate(
+  callbacks.Message(Concatenate(
       "window ", window.width, "x", window.height, " px, ", run.pixels_per_metre, " px a metre; profile ",
       run.config.profile.name, "; ",
       run.config.descriptor == MotionDescriptor::kDense2d
@@ -110,17 +110,18 @@ void SayWhatIsTrained(const MotionRun& run, const PersonWindow& window, const Pi
 }
 
 std::vector<Image> RowOf(const MotionPreview& p) {
-  const auto or_black = [&](const auto& truth, auto picture_of) {
-    return truth.empty() ? Image(p.width, p.height) : picture_of(truth, p.width, p.height);
+  const auto or_black = [&](const auto& truth, auto image_of) {
+    return truth.empty() ? Image(p.width, p.height) : image_of(truth, p.width, p.height);
   };
-  std::vector<Image> row = {PictureOf(p.true_image, p.width, p.height), PictureOf(p.image, p.width, p.height)};
+  std::vector<Image> row = {ImageFromPlanes(p.true_image, p.width, p.height),
+                            ImageFromPlanes(p.image, p.width, p.height)};
   if (!p.labels.empty()) {
-    row.push_back(or_black(p.true_labels, LabelsPicture));
-    row.push_back(LabelsPicture(p.labels, p.width, p.height));
+    row.push_back(or_black(p.true_labels, LabelsImage));
+    row.push_back(LabelsImage(p.labels, p.width, p.height));
   }
   if (!p.normals.empty()) {
-    row.push_back(or_black(p.true_normals, NormalPicture));
-    row.push_back(NormalPicture(p.normals, p.width, p.height));
+    row.push_back(or_black(p.true_normals, NormalImage));
+    row.push_back(NormalImage(p.normals, p.width, p.height));
   }
   return row;
 }

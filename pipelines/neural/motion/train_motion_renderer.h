@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the motion-dependent renderer of one person from files: what `bodyloom train motion` does.
+/// Trains the motion-dependent renderer of one person from files; implements `bodyloom train motion`.
 #pragma once
 
 #include <string>
@@ -19,14 +19,16 @@ struct TrainMotionRendererRequest {
   std::string out;      ///< folder of the run: config.json, checkpoint.bin, metrics.csv, previews
   std::string weights;  ///< folder with vgg16, alexnet, lpips_alex (pipelines/neural/weights_folder.h); empty: none
   bool whole_window =
-      false;  ///< the networks look at the whole window, not only as far around the body as clothes reach
-  /// Profile, parts and numbers; what follows from files (frames, channels, reach, run_dir) is filled in by the job.
+      false;  ///< networks use the whole window, not only the body's surroundings within the reach of clothes
+  /// Profile, parts and hyperparameters; fields that depend on files (frames, channels, reach, run_dir) are set by the
+  /// job.
   TrainMotionOptions options;
 };
 
-/// A run that was stopped ends with its checkpoint and says so (TrainingStatus::kStopped). Throws RequestError for a
-/// request that contradicts itself or the data, std::runtime_error for files that cannot be used and when a loss is not
-/// finite. Previews, a row a frame: truth and result of the image, then of labels and normals where there are any.
+/// Trains or resumes a run. A stopped run ends with its checkpoint and status TrainingStatus::kStopped. Throws
+/// RequestError for a request that contradicts itself or the data, std::runtime_error for files that cannot be used and
+/// when a loss is not finite. Previews have one row per frame: truth and result of the image, then of labels and
+/// normals if there are any.
 TrainMotionSummary TrainMotionRenderer(const TrainMotionRendererRequest& request, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

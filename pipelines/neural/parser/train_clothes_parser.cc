@@ -8,7 +8,7 @@
 #include "data_tools/learned/parser_weights_io.h"
 #include "geometry/base/parallel.h"
 #include "pipelines/files.h"
-#include "pipelines/neural/parser/parser_pictures.h"
+#include "pipelines/neural/parser/training_images.h"
 #include "pipelines/neural/training_session.h"
 
 namespace bodyloom {
@@ -17,29 +17,29 @@ TrainClothesParserSummary TrainClothesParser(const TrainClothesParserRequest& re
                                              const PipelineCallbacks& callbacks) {
   TrainParserOptions options = request.options;
   std::string why;
-  if (!IsValidPictureTraining(options, &why)) throw RequestError(why);
+  if (!IsValidImageTraining(options, &why)) throw RequestError(why);
   RequireReadable(request.data, "data");
   OpenTrainingRun(request.out, &options);
 
-  PicturesOfPeopleRequest people = {request.data,
-                                    request.body,
-                                    false,
-                                    request.size,
-                                    request.body_error_px,
-                                    options.seed,
-                                    ThreadsFor(options.num_threads)};
-  const PicturesToLearnFrom pictures = MakePicturesToLearnFrom(request.data, callbacks, [&](bool test) {
+  ImagesOfPeopleRequest people = {request.data,
+                                  request.body,
+                                  false,
+                                  request.size,
+                                  request.body_error_px,
+                                  options.seed,
+                                  ThreadsFor(options.num_threads)};
+  const TrainingImages images = MakeTrainingImages(request.data, callbacks, [&](bool test) {
     people.test = test;
-    return ParserPicturesOf(people, "read", callbacks);
+    return ParserImagesOf(people, "read", callbacks);
   });
-  const nlohmann::ordered_json recipe = RecipeOf("bodyloom train parser", people, pictures, options);
+  const nlohmann::ordered_json recipe = RecipeOf("bodyloom train parser", people, images, options);
   options.config_json = recipe.dump(2) + "\n";
   WriteRunConfig(options);
 
   FollowTraining(options.steps, callbacks, &options);
-  TrainParserResult result = TrainParser(pictures.train, pictures.test, options);
+  TrainParserResult result = TrainParser(images.train, images.test, options);
   RequireFinite(result.summary, request.out);
-  result.weights.pixels_per_metre = MedianPersonSize(pictures.train);
+  result.weights.pixels_per_metre = MedianPersonSize(images.train);
   result.weights.recipe = recipe.dump();
   const std::string weights = (std::filesystem::path(request.out) / "parser.npz").string();
   WriteParserWeights(weights, result.weights);
@@ -47,7 +47,7 @@ TrainClothesParserSummary TrainClothesParser(const TrainClothesParserRequest& re
   static_cast<TrainParserSummary&>(summary) = result.summary;
   summary.weights = weights;
   summary.num_parameters = result.weights.network.num_parameters();
-  summary.pictures = pictures.train.size(), summary.test_pictures = pictures.test.size();
+  summary.images = images.train.size(), summary.test_images = images.test.size();
   return summary;
 }
 

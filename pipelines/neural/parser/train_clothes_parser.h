@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the clothes parser: what `bodyloom train parser` does.
+/// Trains the clothes parser; implements `bodyloom train parser`.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,23 @@
 namespace bodyloom {
 
 struct TrainClothesParserRequest {
-  std::string data;            ///< a multi-person dataset; its test people are those that training is measured on
+  std::string data;            ///< a multi-person dataset; training is evaluated on its test people
   std::string body;            ///< the people's body; empty: the built-in body
   std::string out;             ///< folder of the run: config.json, metrics.csv, checkpoint.bin, parser.npz
-  int size = 512;              ///< of the windows that people are shown in
-  double body_error_px = 4;    ///< as PicturesOfPeopleRequest has it
-  TrainParserOptions options;  ///< numbers; run_dir is filled in by the job
+  int size = 512;              ///< of the windows around people, pixels
+  double body_error_px = 4;    ///< as in ImagesOfPeopleRequest
+  TrainParserOptions options;  ///< hyperparameters; run_dir is set by the job
 };
 
 struct TrainClothesParserSummary : TrainParserSummary {
-  std::string weights;                     ///< the file written, and others beside it
-  size_t num_parameters = 0;               ///< numbers in it
-  size_t pictures = 0, test_pictures = 0;  ///< that were made
+  std::string weights;                 ///< the weights file; others are written beside it
+  size_t num_parameters = 0;           ///< of the weights file
+  size_t images = 0, test_images = 0;  ///< number of images made
 };
 
-/// A run that was stopped ends with its checkpoint and weights and says so (TrainingStatus::kStopped). Throws
-/// RequestError for options that are not valid and for a run that is or is not there, std::runtime_error for files that
-/// cannot be used and when a loss is not finite, Cancelled while pictures are made.
+/// Trains or resumes a run. A stopped run ends with its checkpoint and weights and status TrainingStatus::kStopped.
+/// Throws RequestError for invalid options and when a run unexpectedly exists or is missing, std::runtime_error for
+/// files that cannot be used and when a loss is not finite, Cancelled while images are made.
 TrainClothesParserSummary TrainClothesParser(const TrainClothesParserRequest& request,
                                              const PipelineCallbacks& callbacks);
 

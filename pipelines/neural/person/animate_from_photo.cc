@@ -26,9 +26,9 @@ constexpr int kSmallestCell = 160;
 void CheckRequest(const AnimateFromPhotoRequest& request) {
   if (request.track.empty() == request.data.empty()) throw RequestError("one of --track and --data is needed");
   if (!request.data.empty() && !(request.view_yaw.empty() && request.garment.from.empty())) {
-    throw RequestError("--data compares with its own pictures: not with --view-yaw or --garment-from");
+    throw RequestError("--data compares with its own images: not with --view-yaw or --garment-from");
   }
-  if (request.data.empty() && !request.weights.empty()) throw RequestError("--weights measure the pictures of --data");
+  if (request.data.empty() && !request.weights.empty()) throw RequestError("--weights measure the images of --data");
   RequireReadable(request.photo.image, "image");
   RequireReadable(request.photo.track, "track of the image");
   RequireReadable(request.photo.labels, "part labels");
@@ -39,7 +39,7 @@ void CheckRequest(const AnimateFromPhotoRequest& request) {
                  {request.out, request.sheet, request.surface, request.json});
 }
 
-/// What is opened once and used by every stage.
+/// Resources that are opened once and used by all stages.
 class PhotoPersonAnimation : public FramePainter {
  public:
   PhotoPersonAnimation(const AnimateFromPhotoRequest& request, const PipelineCallbacks& callbacks)
@@ -48,8 +48,8 @@ class PhotoPersonAnimation : public FramePainter {
   AnimateFromPhotoSummary Run() {
     const std::vector<PhotoRequest> wanted = PhotosWanted(request_);
     CheckRequest(request_);
-    renderer_ = OpenPersonRenderer(
-        {request_.renderer, request_.run, request_.anywhere, request_.completion, request_.threads, request_.device});
+    renderer_ = OpenPersonRenderer({request_.renderer, request_.run, request_.whole_window, request_.completion,
+                                    request_.threads, request_.device});
     OpenPhotos(wanted);
     if (!request_.data.empty()) shown_ = FramesAmong(wanted, request_.data);
     OpenMotion();
@@ -67,21 +67,21 @@ class PhotoPersonAnimation : public FramePainter {
     watch_.Lap();
     frame_ = poses_->Take();
     maps_s_ += watch_.Lap();
-    picture_ = renderer_->Render(frame_);
+    rendered_ = renderer_->Render(frame_);
     const double network_s = watch_.Lap();
     networks_s_ += network_s;
     const PersonWindow& window = maps_->window();
-    Composite(picture_.image, picture_.alpha, window, t, composed);
+    Composite(rendered_.image, rendered_.alpha, window, t, composed);
     if (truth_ && shown_.count(t) == 0) {
       const PersonFrame truth = truth_->Read(t, {true, false, false, false});
-      FillPicture({CutWindow(truth.rgb, window, t), CutLabels(truth.labels, window, t)}, &frame_);
-      scorer_->Add(picture_, frame_);
+      FillImage({CutWindow(truth.rgb, window, t), CutLabels(truth.labels, window, t)}, &frame_);
+      scorer_->Add(rendered_, frame_);
     }
     return network_s;
   }
 
   std::vector<Image> ForSheet(int /*t*/, bool painted, const Image& composed) override {
-    return painted ? renderer_->SheetRow(photos_.front(), frame_, picture_, composed) : std::vector<Image>();
+    return painted ? renderer_->SheetRow(photos_.front(), frame_, rendered_, composed) : std::vector<Image>();
   }
 
  private:
@@ -114,13 +114,13 @@ class PhotoPersonAnimation : public FramePainter {
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(request_.photo.image + ": " + error.what());
     }
-    if (!request_.surface.empty()) WriteImage(request_.surface, renderer_->SurfacePicture());
+    if (!request_.surface.empty()) WriteImage(request_.surface, renderer_->SurfaceImage());
     if (!request_.sheet.empty()) sheet_ = renderer_->SheetBegin(photos_.front());
     source_s_ = watch_.Lap();
   }
 
   AnimateFromPhotoSummary RenderFrames() {
-    const PictureSize size = SizeOfPictures(maps_->window(), track_.camera, request_.full_size);
+    const ImageSize size = SizeOfImages(maps_->window(), track_.camera, request_.full_size);
     if (request_.background.own) notes_ += "background: the photo's, filled in where the person stood\n";
     backdrop_.emplace(request_.background, photo(), size);
     SayLines(notes_, callbacks_);
@@ -187,8 +187,8 @@ class PhotoPersonAnimation : public FramePainter {
   std::unique_ptr<SinglePersonDataset> truth_;
   std::optional<PersonScorer> scorer_;
   std::optional<PhotoBackdrop> backdrop_;
-  PhotoFrame frame_;       ///< painted last
-  PersonPicture picture_;  ///< of it
+  PhotoFrame frame_;         ///< painted last
+  RenderedPerson rendered_;  ///< of it
   std::vector<Image> sheet_;
   double texels_seen_ = 0, read_s_ = 0, source_s_ = 0, maps_s_ = 0, networks_s_ = 0;
   std::unique_ptr<Prefetcher<PhotoFrame>> poses_;  ///< last: its thread uses the rest

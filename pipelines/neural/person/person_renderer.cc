@@ -23,7 +23,7 @@ class OnePhotoPerson : public PersonRenderer {
   OnePhotoPerson(const PersonRendererRequest& request, const PhotoRun& run)
       : config_(run.config),
         renderer_(CheckpointPath(request.run), run.config,
-                  {request.anywhere ? -1 : run.reach, ThreadsFor(request.threads), request.device}) {}
+                  {request.whole_window ? -1 : run.reach, ThreadsFor(request.threads), request.device}) {}
 
   [[nodiscard]] int size() const override { return config_.profile.image_size; }
   [[nodiscard]] int texture_size() const override { return config_.profile.texture_size; }
@@ -45,23 +45,23 @@ class OnePhotoPerson : public PersonRenderer {
     renderer_.Encode(texture);
     return share;
   }
-  PersonPicture Render(const PhotoFrame& pose) override { return renderer_.Render(pose); }
+  RenderedPerson Render(const PhotoFrame& pose) override { return renderer_.Render(pose); }
 
-  [[nodiscard]] Image SurfacePicture() const override { return TexturePicture(renderer_.CompletedTexture()); }
+  [[nodiscard]] Image SurfaceImage() const override { return TextureImage(renderer_.CompletedTexture()); }
   [[nodiscard]] std::vector<Image> SheetBegin(const PhotoFrame& photo) const override {
-    return {PictureOf(photo.image, size(), size()), TexturePicture(seen_), SurfacePicture()};
+    return {ImageFromPlanes(photo.image, size(), size()), TextureImage(seen_), SurfaceImage()};
   }
   [[nodiscard]] int sheet_columns() const override { return 3; }
   [[nodiscard]] std::vector<Image> SheetRow(const PhotoFrame& /*photo*/, const PhotoFrame& /*frame*/,
-                                            const PersonPicture& /*picture*/, const Image& composed) const override {
+                                            const RenderedPerson& /*rendered*/, const Image& composed) const override {
     return {composed};
   }
   [[nodiscard]] Stages stages() const override { return {"prepare", "encode the photo", "render"}; }
   [[nodiscard]] nlohmann::ordered_json Report() const override { return {{"variant", ToText(config_.variant)}}; }
 
  private:
-  [[nodiscard]] Image TexturePicture(std::span<const float> colours) const {
-    return PictureOf(colours, texture_size(), texture_size());
+  [[nodiscard]] Image TextureImage(std::span<const float> colours) const {
+    return ImageFromPlanes(colours, texture_size(), texture_size());
   }
 
   PhotoConfig config_;
@@ -73,9 +73,9 @@ class GuidedPerson : public PersonRenderer {
  public:
   GuidedPerson(const PersonRendererRequest& request, const GuidedRun& run)
       : config_(run.config),
-        renderer_(CheckpointPath(request.run), run.config,
-                  {request.anywhere ? 0 : run.reach, request.completion, ThreadsFor(request.threads), request.device}) {
-  }
+        renderer_(
+            CheckpointPath(request.run), run.config,
+            {request.whole_window ? 0 : run.reach, request.completion, ThreadsFor(request.threads), request.device}) {}
 
   [[nodiscard]] int size() const override { return config_.profile.image_size; }
   [[nodiscard]] int texture_size() const override { return config_.profile.texture_size; }
@@ -91,20 +91,20 @@ class GuidedPerson : public PersonRenderer {
     num_photos_ = person.photos.size();
     return ShareFilled(renderer_.maps(), num_photos_);
   }
-  PersonPicture Render(const PhotoFrame& pose) override { return renderer_.Render(pose); }
+  RenderedPerson Render(const PhotoFrame& pose) override { return renderer_.Render(pose); }
 
   [[nodiscard]] const CoherentMaps* maps() const override { return &renderer_.maps(); }
-  [[nodiscard]] Image SurfacePicture() const override {
-    return GuidedMapsSheet(renderer_.maps(), renderer_.virtual_pictures(), static_cast<int>(num_photos_));
+  [[nodiscard]] Image SurfaceImage() const override {
+    return GuidedMapsSheet(renderer_.maps(), renderer_.virtual_images(), static_cast<int>(num_photos_));
   }
   [[nodiscard]] std::vector<Image> SheetBegin(const PhotoFrame& /*photo*/) const override { return {}; }
   [[nodiscard]] int sheet_columns() const override { return 5; }
   [[nodiscard]] std::vector<Image> SheetRow(const PhotoFrame& photo, const PhotoFrame& frame,
-                                            const PersonPicture& picture, const Image& composed) const override {
+                                            const RenderedPerson& rendered, const Image& composed) const override {
     const int S = size();
-    return {PictureOf(photo.image, S, S), PictureOf(LookUp(renderer_.maps(), frame).image, S, S),
-            LabelsPicture(picture.labels, S, S), PictureOf(picture.image, S, S),
-            frame.image.empty() ? composed : PictureOf(frame.image, S, S)};
+    return {ImageFromPlanes(photo.image, S, S), ImageFromPlanes(LookUp(renderer_.maps(), frame).image, S, S),
+            LabelsImage(rendered.labels, S, S), ImageFromPlanes(rendered.image, S, S),
+            frame.image.empty() ? composed : ImageFromPlanes(frame.image, S, S)};
   }
   [[nodiscard]] Stages stages() const override { return {"read", "source", "frames"}; }
   [[nodiscard]] nlohmann::ordered_json Report() const override {

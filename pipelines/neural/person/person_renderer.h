@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A trained renderer of people from photos, opened from the folder of its run: the same face whichever it is, for
-/// animation and scores.
+/// Common interface of the trained renderers of people from photos, opened from a run's folder, for animation and
+/// scores.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "geometry/body/body_model.h"
-#include "neural/base/person_picture.h"
+#include "neural/base/rendered_person.h"
 #include "neural/guided/coherent_maps.h"
 #include "neural/guided/guided_config.h"
 #include "render/image/image.h"
@@ -29,18 +29,19 @@ enum class PersonRendererKind {
 
 struct PersonRendererRequest {
   PersonRendererKind kind = PersonRendererKind::kPhoto;
-  std::string run;        ///< folder of the trained run
-  bool anywhere = false;  ///< the whole window is computed: people may be farther from the body than clothes ever were
-  /// Of what the photos do not show; absent: as the run says. Of the pose-guided renderer alone.
+  std::string run;  ///< folder of the trained run
+  bool whole_window =
+      false;  ///< the whole window is computed: people may be farther from the body than clothes ever were
+  /// Completion of what the photos do not show, for the pose-guided renderer only; absent: as in the run.
   std::optional<MapCompletion> completion;
   int threads = 0;             ///< 0: all cores
-  std::string device = "cpu";  ///< where the networks run: "cpu" or "cuda"
+  std::string device = "cpu";  ///< device of the networks: "cpu" or "cuda"
 };
 
-/// What is known of a person, in windows and textures of the renderer's sizes.
+/// Photos and body of a person, in windows and textures of the renderer's sizes.
 struct SourcePerson {
-  std::span<const PhotoFrame> photos;  ///< the source first; where somebody lends, the last is that person's
-  std::span<const int> lent_parts;     ///< DensePose's parts of which the last photo says what is worn; empty: none
+  std::span<const PhotoFrame> photos;  ///< the source first, the lender's photo last if there is one
+  std::span<const int> lent_parts;     ///< DensePose parts whose appearance the last photo gives; empty: none
   std::span<const uint8_t> texel_parts;
   const TexelNeighbours* neighbours = nullptr;
   const BodyModel* body = nullptr;
@@ -54,41 +55,42 @@ class PersonRenderer {
   PersonRenderer& operator=(const PersonRenderer&) = delete;
   virtual ~PersonRenderer() = default;
 
-  /// Sides of windows and textures.
+  /// Side lengths of windows and textures.
   [[nodiscard]] virtual int size() const = 0;
   [[nodiscard]] virtual int texture_size() const = 0;
-  /// From now on this is the person. Returns the share of the atlas that the photos fill. Throws std::invalid_argument
-  /// for photos that show nothing of the body.
+  /// Sets the person to render. Returns the share of the atlas that the photos cover. Throws std::invalid_argument for
+  /// photos that show nothing of the body.
   virtual double SetPerson(const SourcePerson& person) = 0;
-  virtual PersonPicture Render(const PhotoFrame& pose) = 0;
+  virtual RenderedPerson Render(const PhotoFrame& pose) = 0;
 
-  /// What the renderer knows of the surface, where it keeps that as maps; nullptr: it does not.
+  /// Coherent maps of the surface; nullptr if the renderer has none.
   [[nodiscard]] virtual const CoherentMaps* maps() const { return nullptr; }
-  /// A picture of what became of the photos: the completed texture, or the coherent maps.
-  [[nodiscard]] virtual Image SurfacePicture() const = 0;
-  /// Pictures that a contact sheet begins with, and how many stand in a row.
+  /// Image of the completed texture or of the coherent maps.
+  [[nodiscard]] virtual Image SurfaceImage() const = 0;
+  /// First pictures of a contact sheet, and the number of pictures per row.
   [[nodiscard]] virtual std::vector<Image> SheetBegin(const PhotoFrame& photo) const = 0;
   [[nodiscard]] virtual int sheet_columns() const = 0;
-  /// Pictures of a frame; `frame` has a picture where the truth is known. `composed`: the video's.
+  /// Pictures of a frame for the contact sheet; `frame` has an image if the truth is known. `composed`: the video's
+  /// image.
   [[nodiscard]] virtual std::vector<Image> SheetRow(const PhotoFrame& photo, const PhotoFrame& frame,
-                                                    const PersonPicture& picture, const Image& composed) const = 0;
-  /// Names of the stages of an animation in its report: what is read, what becomes of the photos, all frames.
+                                                    const RenderedPerson& rendered, const Image& composed) const = 0;
+  /// Names of an animation's stages in its report: reading, processing the photos, rendering all frames.
   struct Stages {
     const char *read, *source, *frames;
   };
   [[nodiscard]] virtual Stages stages() const = 0;
-  /// What a report says of this renderer alone.
+  /// Report entries specific to this renderer.
   [[nodiscard]] virtual nlohmann::ordered_json Report() const = 0;
-  /// Frames that were those before and were not computed again.
+  /// Number of frames equal to the previous one, which were not recomputed.
   [[nodiscard]] virtual int64_t frames_kept() const { return 0; }
-  /// Share of the window's pixels that the networks computed, mean over frames; absent: not known.
+  /// Share of the window's pixels computed by the networks, mean over frames; absent: unknown.
   [[nodiscard]] virtual std::optional<double> computed_share() const { return std::nullopt; }
 };
 
-/// Throws std::runtime_error naming the file of the run that cannot be used.
+/// Opens a run's renderer. Throws std::runtime_error naming the file of the run that cannot be used.
 std::unique_ptr<PersonRenderer> OpenPersonRenderer(const PersonRendererRequest& request);
 
-/// U × U: 1 where the texel is of one of the parts.
+/// Mask of U × U texels: 1 where the texel belongs to one of the parts.
 std::vector<uint8_t> TexelsOf(std::span<const int> parts, std::span<const uint8_t> texel_parts);
 
 }  // namespace bodyloom

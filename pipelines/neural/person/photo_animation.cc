@@ -51,7 +51,7 @@ std::unique_ptr<PhotoMaps> MapsOfMotion(const PhotoAnimationRequest& request, co
   RequireBodyOf(photo, *track, path);
   if (!request.shape_of_motion) track->motion.betas = photo.track.motion.betas;
   if (!request.iuv.empty() && !request.view_yaw.empty()) {
-    throw RequestError("--iuv shows the motion as its pictures do: not with --view-yaw");
+    throw RequestError("--iuv shows the motion as its images do: not with --view-yaw");
   }
   PhotoMapsOptions options;
   options.size = size;
@@ -69,9 +69,9 @@ std::unique_ptr<PhotoMaps> MapsOfMotion(const PhotoAnimationRequest& request, co
   }
 }
 
-PhotoBackdrop::PhotoBackdrop(const PhotoBackground& background, const Photo& photo, PictureSize size) {
+PhotoBackdrop::PhotoBackdrop(const PhotoBackground& background, const Photo& photo, ImageSize size) {
   if (background.own) {
-    filled_ = Covering(FilledBackground(photo.picture, photo.person), size.width, size.height);
+    filled_ = Covering(FilledBackground(photo.image, photo.person), size.width, size.height);
   } else {
     background_.emplace(background.path, size.width, size.height);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Scores of people rendered from photos, in a report.
+/// JSON of the scores of people rendered from photos.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,7 +8,7 @@
 
 namespace bodyloom {
 
-/// One object, without SSIM; what features measured is named for it.
+/// One object, without SSIM; feature-based scores are named after the network that computed them.
 nlohmann::ordered_json ToJson(const PersonScores& scores);
 
 }  // namespace bodyloom

@@ -45,10 +45,10 @@ Track TrackOfClip(const SinglePersonDataset& set, const std::string& name) {
   return track;
 }
 
-constexpr double kLeastError_px = 0.1;  ///< below: none
+constexpr double kMinError_px = 0.1;  ///< below: none
 
 Track WithBodyError(const BodyModel& body, Track track, double error_px, uint64_t seed) {
-  if (error_px < kLeastError_px) return track;
+  if (error_px < kMinError_px) return track;
   track.motion = PerturbMotion(body, track.CameraAt(0), track.motion, error_px, PerturbationOptions(), seed, 1).motion;
   return track;
 }
@@ -102,7 +102,7 @@ class PeopleData::Impl {
         const Track body = BodyOf(person, frame);
         labels = ClothesParser(BuiltinParser()).Labels(truth.image, labels, *body_, body, body.camera, 1);
       }
-      FillPicture({truth.image, std::move(labels)}, &photo);
+      FillImage({truth.image, std::move(labels)}, &photo);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(Concatenate(from.clip->set.path(), ", frame ", from.t, ": ", error.what()));
     }
@@ -138,7 +138,7 @@ class PeopleData::Impl {
     std::vector<FrameOfPerson> frames;
     std::map<std::pair<std::string, int>, int> poses;  // numbers by action and frame
     std::map<std::string, int> views;
-    std::vector<PicturePlace>& places = source_.places.emplace_back();
+    std::vector<ImagePlace>& places = source_.places.emplace_back();
     for (const std::string& name : clips) {
       const std::string path = (fs::path(folder) / name).string();
       const ClipPlace place = PlaceOfClip(name);
@@ -172,16 +172,16 @@ class PeopleData::Impl {
   void Fill(const FrameOfPerson& from, PhotoFrame* photo) {
     Clip& clip = *from.clip;
     FillMaps(clip.maps->At(from.t), request_.size, request_.texture_size, photo);
-    FillPicture(CutAt(from), photo);
+    FillImage(CutAt(from), photo);
   }
 
   const CutPhoto& CutAt(const FrameOfPerson& from) {
     Clip& clip = *from.clip;
     const std::lock_guard lock(mutex_);
     if (!clip.cut[from.t]) {
-      const PersonFrame picture = clip.set.Read(from.t, {true, false, false, false});
-      clip.cut[from.t] = {CutWindow(picture.rgb, clip.maps->window(), from.t),
-                          CutLabels(picture.labels, clip.maps->window(), from.t)};
+      const PersonFrame image = clip.set.Read(from.t, {true, false, false, false});
+      clip.cut[from.t] = {CutWindow(image.rgb, clip.maps->window(), from.t),
+                          CutLabels(image.labels, clip.maps->window(), from.t)};
     }
     return *clip.cut[from.t];
   }

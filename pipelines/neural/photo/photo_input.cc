@@ -20,7 +20,7 @@
 #include "geometry/base/check.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/animate/person_segmentation.h"
-#include "pipelines/animate/photo_pictures.h"
+#include "pipelines/animate/read_photos.h"
 #include "render/texture/complete/partial_texture.h"
 #include "render/uv_maps/posed_track.h"
 #include "tracking/detection/clothes_parser.h"
@@ -30,8 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWhole = 0.99;   ///< of the body's points in the picture: no note
-constexpr double kOthers = 0.02;  ///< of the labels that are other people's: no note
+constexpr double kWhole = 0.99;   ///< minimum share of the body's points in the image without a note
+constexpr double kOthers = 0.02;  ///< maximum share of labels of other people without a note
 
 /// The track's frame alone.
 Track TrackOfFrame(const Track& track, const std::string& path, int frame) {
@@ -57,9 +57,9 @@ struct Files {
   }
 };
 
-/// A picture with its labels, when it has any.
+/// An image with its labels, if any.
 struct Shown {
-  PhotoFile picture;
+  PhotoFile file;
   Image labels;
 };
 
@@ -71,13 +71,13 @@ Shown FromSinglePersonDataset(const PhotoRequest& request) {
   }
   PersonFrame frame = set.Read(request.frame, {true, false, false, false});
   Shown shown;
-  shown.picture.image = std::move(frame.rgb);
+  shown.file.image = std::move(frame.rgb);
   shown.labels = std::move(frame.labels);
   return shown;
 }
 
-/// Grey value `values` as a picture, so that it can be cut and resized like one.
-Image GreyPicture(const std::vector<uint8_t>& values, int width, int height) {
+/// Grey values as an image, for cropping and resizing.
+Image AsGreyImage(const std::vector<uint8_t>& values, int width, int height) {
   Image grey(width, height);
   for (size_t i = 0; i < values.size(); ++i) std::fill_n(&grey.bgr[3 * i], 3, values[i]);
   return grey;
@@ -89,26 +89,26 @@ std::vector<uint8_t> FirstChannel(const Image& grey) {
   return values;
 }
 
-/// The picture at the size that the track was made for, if it only was resized since.
+/// The pixels at the size that the track was made for, if it only was resized since.
 void BringToTrackSize(const std::string& image, const std::string& track_path, const Camera& camera, Shown* shown) {
-  Image& picture = shown->picture.image;
-  const int w = picture.width, h = picture.height;
+  Image& pixels = shown->file.image;
+  const int w = pixels.width, h = pixels.height;
   if (w == camera.width && h == camera.height) return;
   const double scale = double(w) / camera.width;
   const bool same_shape = std::abs(h - scale * camera.height) <= std::max(1.0, scale);
   if (!same_shape || !shown->labels.empty()) {
-    throw std::runtime_error(Concatenate(track_path, ": made for pictures of ", camera.width, "x", camera.height, ", ",
-                                         image, " has ", w, "x", h, "; give the picture that was tracked"));
+    throw std::runtime_error(Concatenate(track_path, ": made for images of ", camera.width, "x", camera.height, ", ",
+                                         image, " has ", w, "x", h, "; give the pixels that was tracked"));
   }
-  shown->picture.notes.push_back(
+  shown->file.notes.push_back(
       Concatenate(w, "x", h, " pixels: resized to the ", camera.width, "x", camera.height, " of its track"));
-  if (!shown->picture.alpha.empty()) {
-    shown->picture.alpha = FirstChannel(Resized(GreyPicture(shown->picture.alpha, w, h), camera.width, camera.height));
+  if (!shown->file.alpha.empty()) {
+    shown->file.alpha = FirstChannel(Resized(AsGreyImage(shown->file.alpha, w, h), camera.width, camera.height));
   }
-  picture = Resized(picture, camera.width, camera.height);
+  pixels = Resized(pixels, camera.width, camera.height);
 }
 
-/// Share of the body's vertices inside the picture.
+/// Share of the body's vertices inside the image.
 double ShareInside(const BodyModel& body, const Track& track) {
   const MatrixX3d vertices = PosedTrack(body, track).Vertices(0);
   const Camera camera = track.CameraAt(0);
@@ -121,16 +121,15 @@ double ShareInside(const BodyModel& body, const Track& track) {
   return inside / std::max(1.0, double(vertices.rows()));
 }
 
-/// DensePose's parts of the clip as labels of the picture.
-Image LabelsOfParts(const PhotoRequest& request, const Image& picture) {
+/// DensePose parts of the clip as labels of the image.
+Image LabelsOfParts(const PhotoRequest& request, const Image& image) {
   const PartLabelSequence parts = ReadPartLabels(request.labels);
-  if (parts.image_width != picture.width || parts.image_height != picture.height ||
-      request.frame >= parts.num_frames()) {
+  if (parts.image_width != image.width || parts.image_height != image.height || request.frame >= parts.num_frames()) {
     throw std::runtime_error(Concatenate(request.labels, ": ", parts.num_frames(), " frames of ", parts.image_width,
                                          "x", parts.image_height, ", requested frame ", request.frame, " of ",
-                                         picture.width, "x", picture.height));
+                                         image.width, "x", image.height));
   }
-  return LabelPicture(parts.frames[request.frame].Unpacked(), picture.width, picture.height);
+  return LabelsAsImage(parts.frames[request.frame].Unpacked(), image.width, image.height);
 }
 
 }  // namespace
@@ -146,7 +145,7 @@ void FillMaps(PhotoMap&& map, int size, int texture_size, PhotoFrame* frame) {
   frame->labels.clear();
 }
 
-void FillPicture(const CutPhoto& cut, PhotoFrame* frame) {
+void FillImage(const CutPhoto& cut, PhotoFrame* frame) {
   const size_t area = cut.labels.size();
   frame->labels = cut.labels;
   frame->image.assign(3 * area, 0);
@@ -172,12 +171,12 @@ Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_
   }
   const Track& whole = files->TrackOf(track_path);
   BringToTrackSize(request.image, track_path, whole.camera, &shown);
-  for (const std::string& text : shown.picture.notes) note(text);
-  photo.picture = std::move(shown.picture.image);
+  for (const std::string& text : shown.file.notes) note(text);
+  photo.image = std::move(shown.file.image);
   photo.track = TrackOfFrame(whole, track_path, request.frame);
   const auto nobody = [&](const char* what) {
     return std::runtime_error(Concatenate(track_path, ": ", what, " ", request.image, " (frame ", request.frame,
-                                          "); is it this picture's track?"));
+                                          "); is it this image's track?"));
   };
   double inside = 0;
   try {
@@ -195,23 +194,23 @@ Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_
     throw std::runtime_error(track_path + ": " + error.what());
   }
   if (inside < kWhole) {
-    note(Concatenate(std::lround(100 * (1 - inside)), " % of the body lies outside the picture: made up"));
+    note(Concatenate(std::lround(100 * (1 - inside)), " % of the body lies outside the image: made up"));
   }
   Image labels = std::move(shown.labels);
   bool of_parts = false;
   if (labels.empty() && !request.labels.empty()) {
-    labels = LabelsOfParts(request, photo.picture);
+    labels = LabelsOfParts(request, photo.image);
     note("body parts stand in for a parsing of the clothes");
     of_parts = true;
   }
   CutPhoto cut;
-  cut.image = CutWindow(photo.picture, photo.window, 0);
+  cut.image = CutWindow(photo.image, photo.window, 0);
   if (labels.empty()) {
     const auto cut_values = [&](const std::vector<uint8_t>& values) {
-      return CutLabels(GreyPicture(values, photo.picture.width, photo.picture.height), photo.window, 0);
+      return CutLabels(AsGreyImage(values, photo.image.width, photo.image.height), photo.window, 0);
     };
-    const std::vector<uint8_t>& alpha = shown.picture.alpha;
-    const std::vector<uint8_t> everywhere(photo.picture.bgr.size() / 3, 1);
+    const std::vector<uint8_t>& alpha = shown.file.alpha;
+    const std::vector<uint8_t> everywhere(photo.image.bgr.size() / 3, 1);
     try {
       const PersonSegmentation segmentation =
           SegmentPerson(cut.image, cut_values(everywhere), alpha.empty() ? std::vector<uint8_t>() : cut_values(alpha),
@@ -232,19 +231,19 @@ Photo MakePhoto(const PhotoRequest& request, Shown shown, int size, int texture_
   if (std::all_of(cut.labels.begin(), cut.labels.end(), [](uint8_t label) { return label == 0; })) {
     throw std::runtime_error(request.image + ": its labels show nobody where the track has the body");
   }
-  FillPicture(cut, &photo.frame);
+  FillImage(cut, &photo.frame);
   const PartialTexture texture = PartialTextureOf(photo.frame);
   if (std::find(texture.visible.begin(), texture.visible.end(), 1) == texture.visible.end()) {
     throw nobody("nothing of its body is to be seen in");
   }
-  // The window's labels where they are in the picture.
-  photo.person.assign(size_t(photo.picture.width) * photo.picture.height, 0);
-  for (int y = 0; y < photo.picture.height; ++y) {
-    for (int x = 0; x < photo.picture.width; ++x) {
+  // The window's labels at their position in the image.
+  photo.person.assign(size_t(photo.image.width) * photo.image.height, 0);
+  for (int y = 0; y < photo.image.height; ++y) {
+    for (int x = 0; x < photo.image.width; ++x) {
       const int column = static_cast<int>(x * photo.window.scale_x) - photo.window.corner[0].x();
       const int row = static_cast<int>(y * photo.window.scale_y) - photo.window.corner[0].y();
       if (column < 0 || row < 0 || column >= size || row >= size) continue;
-      photo.person[size_t(y) * photo.picture.width + x] = cut.labels[size_t(row) * size + column] != 0 ? 1 : 0;
+      photo.person[size_t(y) * photo.image.width + x] = cut.labels[size_t(row) * size + column] != 0 ? 1 : 0;
     }
   }
   return photo;
@@ -256,11 +255,11 @@ std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, 
   BODYLOOM_CHECK(!requests.empty(), "photos: none requested");
   Files files;
   files.body = BodyOrBuiltin(requests[0].body);
-  std::vector<PictureRequest> pictures;
+  std::vector<ImageRequest> images;
   for (const PhotoRequest& request : requests) {
-    if (!IsSinglePersonDataset(request.image)) pictures.push_back({request.image, request.frame});
+    if (!IsSinglePersonDataset(request.image)) images.push_back({request.image, request.frame});
   }
-  std::vector<PhotoFile> read = ReadPictures(pictures);
+  std::vector<PhotoFile> read = ReadImages(images);
   std::vector<Photo> photos;
   size_t next = 0;
   for (const PhotoRequest& request : requests) {
@@ -268,7 +267,7 @@ std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, 
     if (IsSinglePersonDataset(request.image)) {
       shown = FromSinglePersonDataset(request);
     } else {
-      shown.picture = std::move(read[next++]);
+      shown.file = std::move(read[next++]);
     }
     photos.push_back(MakePhoto(request, std::move(shown), size, texture_size, &files));
     RequireBodyOf(photos.front(), photos.back().track, request.track.empty() ? request.image : request.track);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Input of the one-photo renderers from a user's files: one picture of a person, and the poses to show.
+/// Loads the input of the one-photo renderers from a user's files: images of a person, and the poses to render.
 #pragma once
 
 #include <cstdint>
@@ -16,22 +16,22 @@
 
 namespace bodyloom {
 
-/// The window's part of a picture.
+/// Image and labels of a window.
 struct CutPhoto {
   Image image;
   std::vector<uint8_t> labels;
 };
 
-/// uv, parts, texels of a frame; image and labels are left empty.
+/// Sets uv, parts and texels of a frame; image and labels are left empty.
 void FillMaps(PhotoMap&& map, int size, int texture_size, PhotoFrame* frame);
-/// image (0 on the background) and labels.
-void FillPicture(const CutPhoto& cut, PhotoFrame* frame);
+/// Sets image (0 on the background) and labels.
+void FillImage(const CutPhoto& cut, PhotoFrame* frame);
 
 struct PhotoRequest {
-  std::string image;   ///< a picture, a video, a folder of pictures, or a single-person dataset
-  int frame = 0;       ///< of the above, and of the track (a track of one frame: its only one)
+  std::string image;   ///< an image, a video, a folder of images, or a single-person dataset
+  int frame = 0;       ///< of `image` and of `track` (a track of one frame: always that frame)
   std::string track;   ///< empty: the single-person dataset's own
-  std::string labels;  ///< DensePose's parts of the clip, which stand in for a parsing of the clothes; or empty
+  std::string labels;  ///< DensePose parts of the clip, used in place of clothing labels; or empty
   std::string body;    ///< empty: the built-in body
   std::string iuv;  ///< what its pixels show of the body: an IUV image, or a folder with one a frame; empty: what the
                     ///< tracked body says
@@ -39,25 +39,25 @@ struct PhotoRequest {
 
 struct Photo {
   PhotoFrame frame;
-  Image picture;                ///< whole
-  std::vector<uint8_t> person;  ///< of the whole picture: 1 where the person (by its labels) is
+  Image image;                  ///< the whole image
+  std::vector<uint8_t> person;  ///< 1 on the person (by its labels), in the whole image
   PersonWindow window;          ///< of one frame
   std::shared_ptr<const BodyModel> body;
   Track track;        ///< of one frame
-  std::string notes;  ///< lines for the user, each beginning with the image: what stands in for what, what is missing
+  std::string notes;  ///< lines for the user, starting with the image: substitutes and missing data
 };
 
-/// In the order of the requests, of which there is at least one; all are of the first one's body. Files are read once.
-/// A picture of another size than its track's but of the same shape is brought to that size. Throws std::runtime_error,
-/// one line naming the file: it cannot be read, picture and track are of different shapes, there is no such frame, the
-/// track puts nobody into the picture, nothing of the body is to be seen, or the tracks are of different bodies.
+/// Loads the photos in the order of the requests, at least one; all have the first one's body. Files are read once. An
+/// image of the same aspect ratio as its track but of another size is resized. Throws std::runtime_error, one line
+/// naming the file, if it cannot be read, image and track differ in aspect ratio, the frame does not exist, the track
+/// puts nobody into the image, nothing of the body is visible, or the tracks are of different bodies.
 std::vector<Photo> LoadPhotos(std::span<const PhotoRequest> requests, int size, int texture_size);
 
-/// Poses and shape mean something only on the body that they were made for. Throws std::runtime_error naming `path`
-/// when the track is of another one than the photo's.
+/// Requires the track to be of the photo's body, as poses and shape are meaningless on another. Throws
+/// std::runtime_error naming `path` otherwise.
 void RequireBodyOf(const Photo& photo, const Track& track, const std::string& path);
 
-/// "IMAGE:TRACK" or "IMAGE:TRACK:FRAME", as --views and --garment-from take it; a single-person dataset needs no track
+/// Parses "IMAGE:TRACK" or "IMAGE:TRACK:FRAME" of --views and --garment-from; a single-person dataset needs no track
 /// ("DIR" or "DIR::FRAME"). Throws RequestError naming the option.
 PhotoRequest ParsePhotoRequest(const std::string& text, const std::string& option, const PhotoRequest& like);
 

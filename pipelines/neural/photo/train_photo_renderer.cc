@@ -41,7 +41,7 @@ std::string Notes(const std::string& data, const TrainPhotoOptions& o) {
 
 void ReadPerceptualWeights(const std::string& folder, TrainPhotoOptions* options, const PipelineCallbacks& callbacks) {
   WeightsFolder weights = ReadWeightsFolder(folder);
-  if (!folder.empty()) callbacks.Say("weights: " + ToText(weights));
+  if (!folder.empty()) callbacks.Message("weights: " + ToText(weights));
   options->vgg19 = std::move(weights.vgg19);
   options->sphereface = std::move(weights.sphereface);
   options->alexnet = std::move(weights.alexnet);
@@ -49,21 +49,23 @@ void ReadPerceptualWeights(const std::string& folder, TrainPhotoOptions* options
 }
 
 void SayWhatIsTrained(const TrainPhotoOptions& options, const PipelineCallbacks& callbacks) {
-  callbacks.Say(Concatenate(options.train.size(), " people to train on, ", options.validation.size(),
-                            " kept for validation; profile ", options.config.profile.name, ", variant ",
-                            ToText(options.config.variant), "; clothes reach ", options.reach, " px beyond the body"));
+  callbacks.Message(Concatenate(options.train.size(), " people to train on, ", options.validation.size(),
+                                " kept for validation; profile ", options.config.profile.name, ", variant ",
+                                ToText(options.config.variant), "; clothes reach ", options.reach,
+                                " px beyond the body"));
   const int first = options.FirstJudgedStep(), all = options.TotalSteps();
   if (first >= all) {
-    callbacks.Say("no discriminator");
+    callbacks.Message("no discriminator");
   } else if (first != all - options.steps) {
-    callbacks.Say(Concatenate("the discriminator joins after step ", first, " of ", all));
+    callbacks.Message(Concatenate("the discriminator joins after step ", first, " of ", all));
   }
 }
 
 std::vector<Image> RowOf(const PhotoPreview& p) {
-  const int S = p.picture.size, U = p.source.texture_size;
-  return {PictureOf(p.source.image, S, S), PictureOf(p.partial_texture, U, U), PictureOf(p.completed_texture, U, U),
-          PictureOf(p.target.image, S, S), PictureOf(p.picture.image, S, S)};
+  const int S = p.rendered.size, U = p.source.texture_size;
+  return {ImageFromPlanes(p.source.image, S, S), ImageFromPlanes(p.partial_texture, U, U),
+          ImageFromPlanes(p.completed_texture, U, U), ImageFromPlanes(p.target.image, S, S),
+          ImageFromPlanes(p.rendered.image, S, S)};
 }
 
 }  // namespace

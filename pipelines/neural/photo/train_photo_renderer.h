@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trains the one-photo renderer from files: what `bodyloom train photo` does.
+/// Trains the one-photo renderer from files; implements `bodyloom train photo`.
 #pragma once
 
 #include "geometry/base/callbacks.h"
@@ -8,13 +8,13 @@
 
 namespace bodyloom {
 
-/// Of `weights`: vgg19, sphereface, alexnet, lpips_alex.
+/// Request; uses vgg19, sphereface, alexnet and lpips_alex of `weights`.
 using TrainPhotoRendererRequest = TrainOnPeopleRequest<TrainPhotoOptions>;
 
-/// A run that was stopped ends with its checkpoint and says so (TrainingStatus::kStopped). Throws RequestError for a
-/// run that is or is not there, std::runtime_error for files that cannot be used and when a loss is not finite.
-/// Previews, a row a pair: the source picture, what it shows of the texture, the completed texture, the true target,
-/// the result.
+/// Trains or resumes a run. A stopped run ends with its checkpoint and status TrainingStatus::kStopped. Throws
+/// RequestError when a run unexpectedly exists or is missing, std::runtime_error for files that cannot be used and when
+/// a loss is not finite. Previews have one row per pair: source image, the part of the texture it shows, completed
+/// texture, true target, result.
 TrainPhotoSummary TrainPhotoRenderer(const TrainPhotoRendererRequest& request, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

@@ -17,7 +17,7 @@ namespace {
 FittedPhoto FittedPhotoOf(const PhotoFrame& frame, const std::string& name, Track body) {
   FittedPhoto photo;
   photo.name = name;
-  photo.picture = PictureOf(frame.image, frame.size, frame.size);
+  photo.image = ImageFromPlanes(frame.image, frame.size, frame.size);
   photo.track = std::move(body);
   photo.mask.width = photo.mask.height = frame.size;
   photo.mask.labels = photo.labels = frame.labels;
@@ -34,11 +34,11 @@ std::optional<PhotoPerson> PersonOfFrames(const PeopleData& people, int person, 
   for (size_t k = 0; k < photos.size(); ++k) {
     Track body = people.BodyOf(person, frames[k]);
     if (!body.HasResult(0)) continue;
-    const std::string name = Concatenate("person ", person, ", picture ", frames[k]);
+    const std::string name = Concatenate("person ", person, ", image ", frames[k]);
     try {
       builder.Add(FittedPhotoOf(photos[k], name, std::move(body)));
       ++used;
-    } catch (const NothingToTrack&) {  // shows too little: the others may do
+    } catch (const NoPersonFound&) {  // shows too little: the others may do
     }
   }
   if (used == 0) return std::nullopt;

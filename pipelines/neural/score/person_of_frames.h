@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A person made of a dataset's pictures as if they were photos that are fitted already (render/photo_avatar).
+/// Makes a person from a dataset's images, treated as photos with known fits (render/photo_avatar).
 #pragma once
 
 #include <optional>
@@ -13,12 +13,12 @@
 
 namespace bodyloom {
 
-/// Person `person` of `people`; `photos` are its pictures `frames`. None when no photo shows enough of the person.
+/// Makes person `person` of `people`; `photos` are its images `frames`. Empty when no photo shows enough of the person.
 std::optional<PhotoPerson> PersonOfFrames(const PeopleData& people, int person, std::span<const int> frames,
                                           std::span<const PhotoFrame> photos, int texture_size,
                                           const FitClothesOptions& clothes);
 
-/// Of frame `frame`, its clothes hanging still; none where the frame's body is not known.
+/// Pose in frame `frame` with clothes at rest; empty where the frame's body is unknown.
 std::optional<PersonPose> PoseOfFrame(const PhotoPerson& person, const PeopleData& people, int number, int frame);
 
 }  // namespace bodyloom

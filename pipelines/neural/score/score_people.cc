@@ -24,21 +24,21 @@ namespace {
 
 constexpr int kPairColumns = 4, kSmallestPairCell = 128;
 
-/// Numbers of a person's photos, and of the pictures to compare with.
+/// Frame numbers of a person's photos and target images.
 struct PersonPhotos {
   std::vector<int> photos, others;
 };
 
 PersonPhotos PhotosOf(const ScorePeopleRequest& request, const PhotoSource& truth, int person) {
-  const int most = *std::max_element(request.photos.begin(), request.photos.end());
+  const int maximum = *std::max_element(request.photos.begin(), request.photos.end());
   PersonPhotos result;
-  result.photos = ChoosePhotos(truth, person, most);
+  result.photos = ChoosePhotos(truth, person, maximum);
   for (int f = 0; f < truth.num_frames[person]; ++f) {
     if (std::find(result.photos.begin(), result.photos.end(), f) == result.photos.end()) result.others.push_back(f);
   }
   if (result.others.empty()) {
     throw std::runtime_error(request.data + ": a person has " + std::to_string(truth.num_frames[person]) +
-                             " pictures, none is left to compare with");
+                             " images, none is left to compare with");
   }
   return result;
 }
@@ -86,13 +86,13 @@ ScorePeopleSummary Score(const ScorePeopleRequest& request, ScoredRenderer* rend
       for (const int k : EvenlySpreadFrames(static_cast<int>(chosen.others.size()), request.frames)) {
         PhotoFrame other;
         source.fill(person, chosen.others[k], &other);
-        const PersonPicture picture = renderer->Render(chosen.others[k], other);
-        scorers[n].Add(picture, other);
+        const RenderedPerson rendered = renderer->Render(chosen.others[k], other);
+        scorers[n].Add(rendered, other);
         if (request.sheet.empty() || n != 0 || k != 0) continue;
         const int size = other.size;
         for (const std::vector<float>& shown :
-             {photos[0].image, renderer->ShownOf(other), picture.image, other.image}) {
-          sheet.push_back(PictureOf(shown, size, size));
+             {photos[0].image, renderer->ShownOf(other), rendered.image, other.image}) {
+          sheet.push_back(ImageFromPlanes(shown, size, size));
         }
       }
       scorers[n].NextPerson();

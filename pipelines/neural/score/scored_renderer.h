@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A renderer of people from photos, as pipelines/neural/score/score_people.h measures it.
+/// Interface of renderers of people from photos that pipelines/neural/score/score_people.h measures.
 #pragma once
 
 #include <memory>
@@ -21,17 +21,17 @@ class ScoredRenderer {
   virtual ~ScoredRenderer() = default;
 
   [[nodiscard]] virtual const PeopleData& people() const = 0;
-  /// From now on this is the person: `photos` are its pictures `frames`. Returns the share of the atlas that they fill.
+  /// Sets the person; `photos` are its images `frames`. Returns the share of the atlas that they cover.
   virtual double SetPhotos(int person, std::span<const int> frames, std::span<const PhotoFrame> photos) = 0;
-  /// Whether the photos showed enough for a person; without one, nobody is drawn.
+  /// True if the photos show enough of the person; otherwise empty images are drawn.
   [[nodiscard]] virtual bool HasPerson() const { return true; }
-  /// `pose` is frame `frame` of that person.
-  virtual PersonPicture Render(int frame, const PhotoFrame& pose) = 0;
-  /// What the photos show of a pose, 3 planes.
+  /// Renders a pose; `pose` is frame `frame` of that person.
+  virtual RenderedPerson Render(int frame, const PhotoFrame& pose) = 0;
+  /// The photos warped to a pose, 3 planes.
   [[nodiscard]] virtual std::vector<float> ShownOf(const PhotoFrame& pose) const = 0;
 };
 
-/// Throw as ScorePeople().
+/// Factories of the renderers; throw as ScorePeople().
 std::unique_ptr<ScoredRenderer> MakeScoredRun(const ScorePeopleRequest& request, PersonRendererKind kind);
 std::unique_ptr<ScoredRenderer> MakeScoredPerson(const ScorePeopleRequest& request);
 std::unique_ptr<ScoredRenderer> MakeScoredWarp(const ScorePeopleRequest& request);

@@ -12,7 +12,7 @@ class ScoredRun : public ScoredRenderer {
  public:
   ScoredRun(const ScorePeopleRequest& request, PersonRendererKind kind)
       : renderer_(OpenPersonRenderer(
-            {kind, request.run, request.anywhere, request.completion, request.threads, request.device})),
+            {kind, request.run, request.whole_window, request.completion, request.threads, request.device})),
         people_({request.data, request.body, renderer_->size(), renderer_->texture_size(), true, request.given}),
         neighbours_(people_.source().texture_size, people_.source().texel_parts, people_.source().texel_places) {}
 
@@ -23,7 +23,7 @@ class ScoredRun : public ScoredRenderer {
     return renderer_->SetPerson(
         {photos, {}, texel_parts, &neighbours_, people_.body().get(), people_.BodyOf(person, 0).motion.betas});
   }
-  PersonPicture Render(int /*frame*/, const PhotoFrame& pose) override { return renderer_->Render(pose); }
+  RenderedPerson Render(int /*frame*/, const PhotoFrame& pose) override { return renderer_->Render(pose); }
   [[nodiscard]] std::vector<float> ShownOf(const PhotoFrame& pose) const override {
     return LookUp(renderer_->maps() != nullptr ? *renderer_->maps() : shown_, pose).image;
   }

@@ -30,10 +30,10 @@ class ScoredWarp : public ScoredRenderer {
     shown_ = MapsOf(photos, people_.source().texel_parts);
     return ShareFilled(shown_, photos.size());
   }
-  PersonPicture Render(int /*frame*/, const PhotoFrame& pose) override {
-    PersonPicture picture = {pose.size, ShownOf(pose), {}, {}};
-    for (const uint8_t part : pose.parts) picture.alpha.push_back(part != 0 ? 1 : 0);
-    return picture;
+  RenderedPerson Render(int /*frame*/, const PhotoFrame& pose) override {
+    RenderedPerson rendered = {pose.size, ShownOf(pose), {}, {}};
+    for (const uint8_t part : pose.parts) rendered.alpha.push_back(part != 0 ? 1 : 0);
+    return rendered;
   }
   [[nodiscard]] std::vector<float> ShownOf(const PhotoFrame& pose) const override { return LookUp(shown_, pose).image; }
 
@@ -61,24 +61,24 @@ class ScoredPerson : public ScoredRenderer {
     return ShareFilled(shown_, photos.size());
   }
   [[nodiscard]] bool HasPerson() const override { return person_.has_value(); }
-  PersonPicture Render(int frame, const PhotoFrame& pose) override {
-    Image picture(pose.size, pose.size);
+  RenderedPerson Render(int frame, const PhotoFrame& pose) override {
+    Image rendered(pose.size, pose.size);
     std::vector<uint8_t> coverage(static_cast<size_t>(pose.size) * pose.size, 0);
     if (person_) {
       if (const std::optional<PersonPose> body = PoseOfFrame(*person_, people_, number_, frame)) {
-        painter_->Draw(body->vertices_in_camera, body->camera, &picture, &coverage);
+        painter_->Draw(body->vertices_in_camera, body->camera, &rendered, &coverage);
       }
     }
-    return PersonPictureOf(picture, coverage);
+    return PersonImageOf(rendered, coverage);
   }
   [[nodiscard]] std::vector<float> ShownOf(const PhotoFrame& pose) const override { return LookUp(shown_, pose).image; }
 
  private:
-  static PersonPicture PersonPictureOf(const Image& picture, std::span<const uint8_t> coverage) {
+  static RenderedPerson PersonImageOf(const Image& rendered, std::span<const uint8_t> coverage) {
     const size_t pixels = coverage.size();
-    PersonPicture result = {picture.width, std::vector<float>(3 * pixels), {}, {}};
+    RenderedPerson result = {rendered.width, std::vector<float>(3 * pixels), {}, {}};
     for (size_t i = 0; i < pixels; ++i) {
-      for (size_t c = 0; c < 3; ++c) result.image[c * pixels + i] = picture.bgr[3 * i + 2 - c] / 255.0F;
+      for (size_t c = 0; c < 3; ++c) result.image[c * pixels + i] = rendered.bgr[3 * i + 2 - c] / 255.0F;
       result.alpha.push_back(coverage[i] / 255.0F);
     }
     return result;

@@ -15,8 +15,8 @@ namespace {
 using avatar_internal::kAdamBeta1;
 using avatar_internal::kAdamBeta2;
 
-constexpr int kAdamRows = 4096;     ///< a task
-constexpr int kBiasedSteps = 2400;  ///< beyond these 1 − βⁿ is 1
+constexpr int kAdamRows = 4096;     ///< per task
+constexpr int kBiasedSteps = 2400;  ///< beyond these 1 − βⁿ is 1 in float
 
 struct AdamUnbias {
   std::array<float, kBiasedSteps> first{}, second{};
@@ -63,7 +63,7 @@ void AdamStep(const FloatColumns& gradient, std::span<const float> rates, std::s
       unbias1[i - begin] = n > 0 ? unbias.first[n - 1] : 1;
       unbias2[i - begin] = n > 0 ? unbias.second[n - 1] : 1;
     }
-    // Spare rows take part with flags of 0.
+    // Spare rows are processed with flags of 0.
     const int whole = (end - begin + FloatColumns::kLanes - 1) / FloatColumns::kLanes * FloatColumns::kLanes;
     for (int c = 0; c < columns; ++c) {
       if (rates[c] == 0) continue;

@@ -6,7 +6,7 @@ namespace bodyloom::avatar_internal {
 
 struct AdamColumn {
   const float* gradient = nullptr;
-  const float* moves = nullptr;    ///< 1 or 0, by row: those of 0 keep everything
+  const float* moves = nullptr;    ///< 1 or 0, by row: rows with 0 stay unchanged
   const float* unbias1 = nullptr;  ///< 1/(1 − β₁ⁿ) of the row's n steps
   const float* unbias2 = nullptr;  ///< 1/sqrt(1 − β₂ⁿ)
   float *first = nullptr, *second = nullptr, *value = nullptr;

@@ -14,7 +14,7 @@ namespace {
 
 enum TrainerStream : uint64_t { kOrderStream = 0x300, kBackgroundStream, kRelocateStream };
 
-/// Columns first to first + count − 1 of a row to unit length, where they have one.
+/// Normalises columns first to first + count − 1 of a row, unless they are zero.
 void Normalise(int row, int first, int count, FloatColumns* table) {
   float square = 0;
   for (int c = first; c < first + count; ++c) square += (*table)(row, c) * (*table)(row, c);
@@ -25,7 +25,7 @@ void Normalise(int row, int first, int count, FloatColumns* table) {
 
 bool IsUsable(const TrainingView& view) { return !view.window.empty() && view.person_pixels > 0; }
 
-/// Pixels' worth of a drawn Gaussian with nothing in front: the integral of its α.
+/// Number of pixels that an unoccluded Gaussian covers: the integral of its α.
 float PixelsAlone(const FloatColumns& screen, int row) {
   const float xy = screen(row, ScreenGaussians::kConicXy);
   const float determinant = screen(row, ScreenGaussians::kConicXx) * screen(row, ScreenGaussians::kConicYy) - xy * xy;
@@ -41,7 +41,7 @@ bool AvatarTrainerOptions::IsValid(std::string* why) const {
          rates.IsValid(why) && scales.IsValid(why) && held_out.IsValid(why) &&
          in_range("cost by opacity", cost.by_opacity, 0, 1e3) && in_range("cost by scale", cost.by_scale, 0, 1e3) &&
          in_range("cost by distance", cost.by_distance, 0, 1e3) && in_range("relocate_every", relocate_every, 0, 1e8) &&
-         in_range("least_seen", least_seen, 0, 1) && in_range("refine_from", refine_from, 0, 1) &&
+         in_range("min_seen", min_seen, 0, 1) && in_range("refine_from", refine_from, 0, 1) &&
          in_range("relocate_until", relocate_until, 0, 1) && in_range("dead_opacity", dead_opacity, 0, 0.99) &&
          in_range("num_threads", num_threads, 1, 1024);
 }
@@ -75,7 +75,7 @@ double AvatarTrainer::Progress(const AvatarTrainingState& state) const {
   return std::min(1.0, std::max({by_steps, by_time, state.held_out.Progress(state.step, options_.held_out)}));
 }
 
-void AvatarTrainer::Watch(std::span<const TrainingView> held_out) {
+void AvatarTrainer::SetValidationViews(std::span<const TrainingView> held_out) {
   held_out_.clear();
   for (const TrainingView& view : held_out) {
     if (IsUsable(view)) held_out_.push_back(&view);
@@ -128,7 +128,7 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   HashRandom random(options_.seed, {kBackgroundStream, static_cast<uint64_t>(state->step)});
   std::array<float, 3> background{};
   for (float& b : background) b = static_cast<float>(random.Uniform());
-  done.loss = loss_.Compute(painter_.picture().planes(), truth_, background, options_.num_threads, &by_planes_);
+  done.loss = loss_.Compute(painter_.image().planes(), truth_, background, options_.num_threads, &by_planes_);
   if (std::isfinite(done.loss)) {
     clock_.Begin("derivatives");
     painter_.GoBack(state->body, faces_, frame, seen, by_planes_, &gradient_);
@@ -138,7 +138,7 @@ AvatarStep AvatarTrainer::Step(AvatarTrainingState* state) {
   }
   ++state->step;
   if (options_.learn_person) done.relocated = Relocate(state, progress);
-  JudgeHeldOut(state);
+  Validate(state);
   clock_.End();
   state->seconds += watch.seconds();
   return done;
@@ -151,7 +151,7 @@ AvatarView AvatarTrainer::Draw(const TrainingView& view, const AvatarFrame& fram
   return seen;
 }
 
-void AvatarTrainer::JudgeHeldOut(AvatarTrainingState* state) {
+void AvatarTrainer::Validate(AvatarTrainingState* state) {
   const int every = options_.held_out.every;
   if (held_out_.empty() || every == 0 || (state->step % every != 0 && !IsDone(*state))) return;
   clock_.Begin("held-out frames");
@@ -160,7 +160,7 @@ void AvatarTrainer::JudgeHeldOut(AvatarTrainingState* state) {
   for (const TrainingView* view : held_out_) {
     Draw(*view, view->frame, *state);
     FillTruth(*view, &truth_);
-    sum += loss_.Compute(painter_.picture().planes(), truth_, kGrey, options_.num_threads, &by_planes_);
+    sum += loss_.Compute(painter_.image().planes(), truth_, kGrey, options_.num_threads, &by_planes_);
   }
   const double loss = sum / static_cast<double>(held_out_.size());
   if (!state->kept || loss < state->kept->loss) state->kept = {state->body, state->step, loss};
@@ -176,7 +176,7 @@ void AvatarTrainer::LearnPerson(double progress, AvatarTrainingState* state, Ava
 
 int AvatarTrainer::ChooseMovers(AvatarTrainingState* state) {
   const FloatColumns& by_screen = painter_.by_screen();
-  const auto least = static_cast<float>(options_.least_seen * PictureLoss::ByPixel(truth_));
+  const auto minimum = static_cast<float>(options_.min_seen * ImageLoss::ByPixel(truth_));
   const FloatColumns& screen = painter_.screen().columns;
   moves_.resize(state->body.size());
   int drawn = 0;
@@ -187,7 +187,7 @@ int AvatarTrainer::ChooseMovers(AvatarTrainingState* state) {
     state->pull[i] += std::sqrt(x * x + y * y);
     float by_colour = 0;
     for (int c = ScreenGaussians::kRed; c <= ScreenGaussians::kBlue; ++c) by_colour += std::abs(by_screen(i, c));
-    if (moves_[i] != 0 && by_colour >= least * PixelsAlone(screen, i)) continue;
+    if (moves_[i] != 0 && by_colour >= minimum * PixelsAlone(screen, i)) continue;
     if (state->body.kinds[i] != GaussianKind::kLoose) moves_[i] = 0;
     for (int c = 0; c < GaussianBody::kNumParameters; ++c) gradient_.parameters(i, c) = 0;
   }
@@ -228,7 +228,7 @@ int AvatarTrainer::Relocate(AvatarTrainingState* state, double progress) {
 
 namespace {
 
-/// From `rate` to rate · at_end, exponentially.
+/// Exponential decay from `rate` to rate · at_end.
 float Shrunk(double rate, double at_end, double progress) {
   return static_cast<float>(rate * std::pow(at_end, std::clamp(progress, 0.0, 1.0)));
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kCorrectiveReach = 0.06F;  ///< metres from the skin where the surface's corrective is followed no more
+constexpr float kCorrectiveReach = 0.06F;  ///< distance where the corrective ends, metres
 
 struct LoosePlace {
   Vector3f place;
@@ -25,7 +25,7 @@ struct LoosePlace {
   float weights[GaussianBody::kInfluences];
 };
 
-/// The six largest weights, the pelvis instead of the last where it is not among them.
+/// Keeps the six largest weights, with the pelvis in place of the last if it is not among them.
 void KeepLargest(const std::vector<float>& weights, LoosePlace* place) {
   constexpr int kKept = GaussianBody::kInfluences;
   std::vector<int> order(weights.size());
@@ -42,7 +42,7 @@ void KeepLargest(const std::vector<float>& weights, LoosePlace* place) {
   for (float& w : place->weights) w /= sum;
 }
 
-/// Whether enough of the views, and not too many, show the person at a place.
+/// True if the share of views that show the person at a point is within the limits.
 bool IsInShell(const LoosePlace& place, std::span<const TrainingView* const> views,
                const LooseGaussiansOptions& options) {
   const auto count = static_cast<float>(views.size());
@@ -65,21 +65,21 @@ bool IsInShell(const LoosePlace& place, std::span<const TrainingView* const> vie
     const int x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
     if (view->ShowsPerson(x, y)) {
       ++inside;
-    } else if (static_cast<float>(++outside) > (1 - options.least_share) * count) {
+    } else if (static_cast<float>(++outside) > (1 - options.min_share) * count) {
       return false;
     }
   }
   const auto seen = static_cast<float>(inside + outside);
-  return inside > 0 && static_cast<float>(inside) >= options.least_share * seen &&
-         static_cast<float>(inside) <= options.most_share * seen;
+  return inside > 0 && static_cast<float>(inside) >= options.min_share * seen &&
+         static_cast<float>(inside) <= options.max_share * seen;
 }
 
-std::vector<const TrainingView*> SpreadViews(std::span<const TrainingView> views, int most) {
+std::vector<const TrainingView*> SpreadViews(std::span<const TrainingView> views, int maximum) {
   std::vector<const TrainingView*> all, spread;
   for (const TrainingView& view : views) {
     if (!view.window.empty()) all.push_back(&view);
   }
-  const size_t count = std::min<size_t>(all.size(), most);
+  const size_t count = std::min<size_t>(all.size(), maximum);
   for (size_t i = 0; i < count; ++i) spread.push_back(all[i * all.size() / count]);
   return spread;
 }
@@ -112,8 +112,8 @@ void SetRow(const SmoothSkinWeights& skin, const VertexAnchors& anchors, const L
 bool LooseGaussiansOptions::IsValid(std::string* why) const {
   const InRange in_range(why);
   return in_range("spacing_m", spacing_m, 0.004, 0.1) && in_range("reach_m", reach_m, 0.02, 1) &&
-         in_range("least_share", least_share, 0, 1) && in_range("most_share", most_share, least_share, 1) &&
-         in_range("most_views", most_views, 1, 1e6) && in_range("count", count, 0, 1e7) &&
+         in_range("min_share", min_share, 0, 1) && in_range("max_share", max_share, min_share, 1) &&
+         in_range("max_views", max_views, 1, 1e6) && in_range("count", count, 0, 1e7) &&
          in_range("opacity_logit", opacity_logit, -20, 20) && in_range("albedo", albedo, 0, 1) &&
          in_range("num_threads", num_threads, 1, 1024);
 }
@@ -124,10 +124,10 @@ GaussianBody LooseGaussians(const BodyModel& model, const Eigen::VectorXd& betas
   BODYLOOM_CHECK(options.IsValid(&why), "loose Gaussians: ", why);
   GaussianBody body;
   body.Resize(0);
-  const std::vector<const TrainingView*> shown = SpreadViews(views, options.most_views);
+  const std::vector<const TrainingView*> shown = SpreadViews(views, options.max_views);
   if (shown.empty() || options.count == 0) return body;
   const SmoothSkinWeights skin(model, betas, options.reach_m, options.num_threads);
-  // Around the person at rest, layer by layer.
+  // Grid points around the person at rest, layer by layer.
   const Vector3f extent = skin.high() - skin.low();
   const Eigen::Vector3i size = (extent / options.spacing_m).array().floor().cast<int>() + 1;
   std::vector<std::vector<LoosePlace>> layers(size.z());
@@ -147,7 +147,7 @@ GaussianBody LooseGaussians(const BodyModel& model, const Eigen::VectorXd& betas
   });
   std::vector<LoosePlace> places;
   for (const auto& layer : layers) places.insert(places.end(), layer.begin(), layer.end());
-  // The first `count` of a random order, in the order of the grid.
+  // A random subset of `count`, in grid order.
   if (places.size() > static_cast<size_t>(options.count)) {
     std::vector<std::pair<uint64_t, size_t>> drawn(places.size());
     for (size_t i = 0; i < places.size(); ++i) drawn[i] = {HashRandom(options.seed, {0x100, i}).Next(), i};
@@ -184,10 +184,10 @@ void AppendGaussians(const GaussianBody& more, GaussianBody* body) {
 
 namespace {
 
-constexpr float kLeastSigma = 0.03F, kSigmaADistance = 0.7F;  ///< metres; of the distance to the body
+constexpr float kMinSigma = 0.03F, kSigmaADistance = 0.7F;  ///< minimum, metres; factor of the distance to the body
 constexpr int kVertexLanes = 16;
 constexpr float kFarOff = 1e15F;
-constexpr float kSigmas = 3;  ///< beyond so many σ a vertex counts nothing
+constexpr float kSigmas = 3;  ///< vertices beyond so many σ are ignored
 
 }  // namespace
 
@@ -195,19 +195,19 @@ SmoothSkinWeights::SmoothSkinWeights(const BodyModel& model, const Eigen::Vector
     : vertices_(ShapeVertices(model, betas).cast<float>()), reach_(reach), num_joints_(model.num_joints()) {
   BODYLOOM_CHECK(reach >= 0.01F && reach <= 2, "smooth skin weights: reach is ", reach, " m, expected 0.01 to 2");
   for (int c = 0; c < 3; ++c) {
-    // Whole lanes; those that stand in for a vertex are far off.
+    // Padded to whole lanes with far-away vertices.
     columns_[c].assign((vertices_.rows() + kVertexLanes - 1) / kVertexLanes * kVertexLanes, kFarOff);
     for (Eigen::Index v = 0; v < vertices_.rows(); ++v) columns_[c][v] = vertices_(v, c);
   }
   low_ = vertices_.colwise().minCoeff().transpose().array() - reach - kCell;
-  const Eigen::Vector3f most = vertices_.colwise().maxCoeff().transpose().array() + reach + kCell;
-  for (int c = 0; c < 3; ++c) size_[c] = static_cast<int>(std::ceil((most[c] - low_[c]) / kCell)) + 1;
+  const Eigen::Vector3f maximum = vertices_.colwise().maxCoeff().transpose().array() + reach + kCell;
+  for (int c = 0; c < 3; ++c) size_[c] = static_cast<int>(std::ceil((maximum[c] - low_[c]) / kCell)) + 1;
   const size_t nodes = static_cast<size_t>(size_[0]) * size_[1] * size_[2];
   distance_.assign(nodes, 2 * reach_ + 1);
   weights_.assign(nodes * num_joints_, 0.0F);
   const size_t slice = static_cast<size_t>(size_[0]) * size_[1];
   ParallelFor(size_[2], num_threads, [&](int z) {
-    float at_least = 0;  // a distance changes by no more than a step
+    float at_least = 0;  // lower bound: a distance changes by at most one step
     for (size_t i = 0; i < slice; ++i) {
       at_least = i % size_[0] == 0 ? 0 : at_least - kCell;
       float& distance = distance_[z * slice + i];
@@ -227,11 +227,11 @@ Eigen::Vector3f SmoothSkinWeights::high() const {
 
 int SmoothSkinWeights::NearestVertex(const Eigen::Vector3f& place) const {
   int nearest = 0;
-  float least = 1e30F;
+  float minimum = 1e30F;
   for (int v = 0; v < static_cast<int>(vertices_.rows()); ++v) {
     const float x = columns_[0][v] - place[0], y = columns_[1][v] - place[1], z = columns_[2][v] - place[2];
     const float square = x * x + y * y + z * z;
-    if (square < least) least = square, nearest = v;
+    if (square < minimum) minimum = square, nearest = v;
   }
   return nearest;
 }
@@ -253,18 +253,18 @@ void SmoothSkinWeights::FillNode(const BodyModel& model, size_t node) {
       lanes[k] = square < lanes[k] ? square : lanes[k];
     }
   }
-  const float least = *std::min_element(lanes, lanes + kVertexLanes);
-  const float distance = std::sqrt(least);
+  const float minimum = *std::min_element(lanes, lanes + kVertexLanes);
+  const float distance = std::sqrt(minimum);
   distance_[node] = distance;
   if (distance > reach_ + 2 * kCell) return;
-  const float sigma = std::max(kLeastSigma, kSigmaADistance * distance);
+  const float sigma = std::max(kMinSigma, kSigmaADistance * distance);
   const float farthest = (distance + kSigmas * sigma) * (distance + kSigmas * sigma);
   float* weights = weights_.data() + node * num_joints_;
   double total = 0;
   for (int v = 0; v < count; ++v) {
     if (squares[v] > farthest) continue;
-    // Relative to the nearest one: far off all would round to nothing.
-    const float share = std::exp((least - squares[v]) / (2 * sigma * sigma));
+    // Relative to the nearest vertex, as all would underflow far from the body.
+    const float share = std::exp((minimum - squares[v]) / (2 * sigma * sigma));
     total += share;
     for (int k = model.influence_begin()[v]; k < model.influence_begin()[v + 1]; ++k) {
       weights[model.influence_joint()[k]] += share * static_cast<float>(model.influence_weight()[k]);

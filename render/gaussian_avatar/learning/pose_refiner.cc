@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double kBlockPixels = 64;
-constexpr double kMeanKept = 0.8, kSquareKept = 0.9;  ///< a frame comes some twenty times
+constexpr double kMeanKept = 0.8, kSquareKept = 0.9;  ///< a frame is visited about twenty times
 
 VectorXd CorrectionOf(int frame, const FloatColumns& table) {
   VectorXd row(table.columns());
@@ -133,12 +133,12 @@ MatrixXd PoseRefiner::Metric(int frame) const {
 
 void PoseRefiner::Step(int frame, const std::vector<float>& by_bones, double person_pixels, double progress,
                        PoseCorrections* corrections) const {
-  const VectorXd by_picture =
+  const VectorXd by_image =
       person_pixels / kBlockPixels / options_.photo_sigma * ByCorrection(frame, by_bones, *corrections);
-  if (!by_picture.allFinite()) return;
+  if (!by_image.allFinite()) return;
   const MatrixXd metric = Metric(frame);
   const VectorXd d = CorrectionOf(frame, corrections->values);
-  VectorXd direction = metric.llt().solve(by_picture) + d;
+  VectorXd direction = metric.llt().solve(by_image) + d;
   for (const int beside : {frame - 1, frame + 1}) {
     if (beside < 0 || beside >= num_frames() || corrections->steps[beside] == 0) continue;
     direction += (d - CorrectionOf(beside, corrections->values)) / (options_.drift * options_.drift);

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Poses of a clip that are corrected by its pictures: the way from derivatives by the bones to a better track.
+/// Refines the poses of a clip by its images: backpropagates from bones to poses and corrects the track.
 ///
-/// A correction d of a frame turns every joint and moves the body in the camera's frame, relative to the track:
+/// A correction d of a frame rotates every joint and translates the body in the camera's frame, relative to the track:
 ///   R_j = R_j(track) exp([d_j]×),   trans = trans(track) + d_J
-/// What it costs, in standard deviations squared: with the joints' Jacobian P at the track's pose, σ_j how well the
-/// track knows a joint's place across the view, n joints that err together, and σ_a how far a turn may go by itself,
-///   M = Pᵀ diag(1/(n σ_j²)) P + diag(1/σ_a²) over the turns,
-///   cost = ½ dᵀ M d + ½ Σ over the frames s beside it (d − d_s)ᵀ M (d − d_s) / drift²
-/// and the picture counts as its own error tells: blocks of 8×8 of the person's pixels that each err by photo_sigma,
+/// Its prior cost is, with the joints' Jacobian P at the track's pose, σ_j the track's uncertainty of a joint's
+/// position perpendicular to the view, n the number of jointly erring joints, and σ_a the prior deviation of a
+/// rotation,
+///   M = Pᵀ diag(1/(n σ_j²)) P + diag(1/σ_a²) over the rotations,
+///   cost = ½ dᵀ M d + ½ Σ over the neighbouring frames s (d − d_s)ᵀ M (d − d_s) / drift²
+/// The image is weighted by its error: blocks of 8×8 of the person's pixels have independent errors photo_sigma,
 ///   energy = person pixels/64 · loss/photo_sigma + cost
-/// So the track's priors stay: it was found with them, and here it is left only for what the picture shows. A track's
-/// joint_sigma is about the mid-hip and of all three axes alike; across the view it is across_share of that. How far
-/// the person is from the camera (root_sigma) is not asked: one camera does not see it, and it is the same in all
-/// frames.
+/// The track's priors thus remain in effect through the prior cost. A track's joint_sigma is relative to the mid-hip
+/// and isotropic; perpendicular to the view it is across_share of that. The distance from the camera (root_sigma) is
+/// not used: a single camera does not observe it, and its error is common to all frames.
 ///
-/// A step goes along M⁻¹ d energy/d d, in Adam's manner: the mean of the last ones, divided by the root of the mean of
-/// their squared lengths in M, times `rate`; so nothing depends on how a joint's turns are counted. Where the pictures
-/// pull nowhere a track stays as it is, byte for byte.
+/// A step follows M⁻¹ d energy/d d as in Adam: the mean of past directions, divided by the root of the mean of their
+/// squared lengths in M, times `rate`; this is independent of the parametrisation of rotations. Where the images give
+/// no derivative a track stays as it is, byte for byte.
 ///
-/// The pose correctives of the skin are taken as given in the derivative (render/gaussian_avatar/pose_gradient.h), and
-/// follow the corrected pose when it is drawn.
+/// The pose correctives of the skin are constant in the derivative (render/gaussian_avatar/pose_gradient.h), and follow
+/// the corrected pose in rendering.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,30 +35,30 @@
 
 namespace bodyloom {
 
-/// A frame of the clip as the track has it, in the camera's frame.
+/// The track's pose of a frame, in the camera's frame.
 struct TrackedPose {
   BodyPose pose;                    ///< without rotations: none
   std::vector<double> joint_sigma;  ///< J, metres, about the mid-hip, one axis; empty or NaN: not known
 };
 
 struct PoseRefinerOptions {
-  double photo_sigma = 0.1;         ///< 1e-4 to 1e4: by how much a block of pixels is off, white is 1
+  double photo_sigma = 0.1;         ///< 1e-4 to 1e4: standard deviation of a block of pixels, white is 1
   double place_sigma_m = 0.02;      ///< 1e-4 to 10: σ_j of a joint whose joint_sigma is not known
-  double across_share = 0.6;        ///< 1e-3 to 10: of joint_sigma, of a track of one camera
+  double across_share = 0.6;        ///< 1e-3 to 10: factor of joint_sigma, for a track of one camera
   double joints_together = 8;       ///< 1 to 1000
   double turn_sigma_deg = 8;        ///< 0.01 to 180
   double drift = 0.5;               ///< 1e-3 to 1e6
-  double rate = 2, rate_end = 0.1;  ///< 0 to 100: standard deviations a step, at the begin and at the end
+  double rate = 2, rate_end = 0.1;  ///< 0 to 100: standard deviations per step, initial and final
   [[nodiscard]] bool IsValid(std::string* why) const;
 };
 
-/// What is learned, a row a frame of the clip, and what goes on with it.
+/// Learned corrections, one row per frame of the clip, with the state of the optimiser.
 struct PoseCorrections {
-  FloatColumns values;         ///< T × (3J + 3): turns d_j, radians, then metres
+  FloatColumns values;         ///< T × (3J + 3): rotations d_j, radians, then translation, metres
   FloatColumns mean;           ///< of the steps' directions
   std::vector<float> square;   ///< T: mean of their squared lengths
   std::vector<int32_t> steps;  ///< T
-  /// Zeros.
+  /// Sets zeros.
   void Reset(int num_frames, int num_joints);
   [[nodiscard]] bool IsZero(int frame) const;
 };
@@ -80,9 +80,8 @@ class PoseRefiner {
   [[nodiscard]] Eigen::VectorXd ByCorrection(int frame, const std::vector<float>& by_bones,
                                              const PoseCorrections& corrections) const;
 
-  /// One step of a frame that has a pose, by the same.
-  /// `person_pixels`: of the truth; `progress` in [0, 1]: the rate goes exponentially to its end. Derivatives that are
-  /// not finite move nothing.
+  /// Performs one step for a frame with a pose. `by_bones`: as for ByCorrection(); `person_pixels`: of the truth;
+  /// `progress` in [0, 1]: the rate decays exponentially to rate_end. Derivatives that are not finite change nothing.
   void Step(int frame, const std::vector<float>& by_bones, double person_pixels, double progress,
             PoseCorrections* corrections) const;
 
@@ -96,14 +95,14 @@ class PoseRefiner {
   PoseRefinerOptions options_;
 };
 
-// A track as poses that pictures correct (render/gaussian_avatar/learning/pose_refiner.h), and back.
+// Converts a track to poses for refinement, and back.
 
-/// One a frame; without rotations where the track has no result.
+/// One per frame; without rotations where the track has no result.
 std::vector<TrackedPose> TrackedPoses(const BodyModel& body, const Track& track);
 
-/// The track with its corrected frames' poses, places, joints and landmarks; all else, and every joint's axis-angle
-/// that has no correction, stays byte for byte. joint_sigma stays the track's own. `refiner` was made of TrackedPoses()
-/// of this track.
+/// The track with corrected poses, positions, joints and landmarks; all else, and the axis-angle of every joint without
+/// correction, stays byte for byte. joint_sigma stays the track's own. `refiner` must be built from TrackedPoses() of
+/// this track.
 Track RefinedTrack(const BodyModel& body, const Track& track, const PoseRefiner& refiner,
                    const PoseCorrections& corrections);
 

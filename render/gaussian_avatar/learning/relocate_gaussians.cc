@@ -17,7 +17,7 @@ float OpacityAt(const GaussianBody& body, int row) {
   return 1 / (1 + std::exp(-body.parameters(row, GaussianBody::kOpacityLogit)));
 }
 
-/// Away from a Gaussian's place, in rest space, by its own distribution.
+/// Offset from a Gaussian's mean, in rest space, sampled from its distribution.
 Eigen::Vector3f DrawnOffset(const GaussianBody& body, int row, HashRandom* random) {
   const FloatColumns& p = body.parameters;
   Eigen::Quaternionf turn(p(row, GaussianBody::kQuaternion), p(row, GaussianBody::kQuaternion + 1),

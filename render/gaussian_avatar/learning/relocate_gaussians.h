@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Gaussians that nobody sees any more, moved to where the picture is wrong. Their number, and so the cost of a
-/// picture, stays.
+/// Relocates invisible Gaussians to where the image is wrong. Their number, and hence the rendering time, stays.
 ///
-/// A Gaussian of opacity below `dead_opacity` becomes a copy of a living one, drawn with a chance proportional to
-/// `pull`, at a place drawn from that one's own distribution. Original and copy then get the opacity 1 − sqrt(1 − o),
-/// so that the two together cover what the one did, and 0.8 times the size.
+/// A Gaussian with opacity below `dead_opacity` becomes a copy of another, sampled with probability proportional to
+/// `pull`, at a position sampled from that one's distribution. Original and copy get the opacity 1 − sqrt(1 − o), so
+/// that together they have the former opacity, and 0.8 times the size.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +19,8 @@ struct RelocateOptions {
   uint64_t seed = 1;
 };
 
-/// Rows that were moved, in their order; without pull (all 0, or not finite) none. `pull`: by row, negative and
-/// not finite ones count as 0. A function of the arguments alone. Throws std::invalid_argument for another number of
-/// pulls than rows.
+/// Returns the relocated rows, ascending; none without pull (all 0, or not finite). `pull`: by row; negative values and
+/// those not finite count as 0. Deterministic. Throws std::invalid_argument unless there is one pull per row.
 std::vector<int> RelocateGaussians(std::span<const float> pull, const RelocateOptions& options, GaussianBody* body);
 
 }  // namespace bodyloom

@@ -5,12 +5,12 @@
 
 namespace bodyloom {
 
-TrainingView CutTrainingView(const Image& picture, const PersonAt& person_at, const PixelBox& search,
+TrainingView CutTrainingView(const Image& image, const PersonAt& person_at, const PixelBox& search,
                              const PixelBox& body, int margin) {
-  const PixelBox whole = {0, 0, picture.width, picture.height}, seen = search.ClippedTo(whole);
+  const PixelBox whole = {0, 0, image.width, image.height}, seen = search.ClippedTo(whole);
   TrainingView view;
   PixelBox box = body.ClippedTo(whole);
-  if (box.empty()) box = {picture.width, picture.height, 0, 0};
+  if (box.empty()) box = {image.width, image.height, 0, 0};
   for (int y = seen.y_begin; y < seen.y_end; ++y) {
     for (int x = seen.x_begin; x < seen.x_end; ++x) {
       if (person_at(x, y) == 0) continue;
@@ -25,14 +25,14 @@ TrainingView CutTrainingView(const Image& picture, const PersonAt& person_at, co
   for (int y = view.window.y_begin; y < view.window.y_end; ++y) {
     for (int x = view.window.x_begin; x < view.window.x_end; ++x) {
       uint8_t* to = view.pixels.data() + 4 * view.window.IndexOf(x, y);
-      std::copy_n(picture.pixel(x, y), 3, to);
+      std::copy_n(image.pixel(x, y), 3, to);
       to[3] = seen.Contains(x, y) ? person_at(x, y) : 0;
     }
   }
   return view;
 }
 
-void FillTruth(const TrainingView& view, PictureTruth* truth) {
+void FillTruth(const TrainingView& view, ImageTruth* truth) {
   truth->width = view.window.width(), truth->height = view.window.height();
   truth->person_pixels = std::max(1, view.person_pixels);
   const auto area = static_cast<int>(view.window.area());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A frame that a person of Gaussians is learned from.
+/// Training frame of a person of Gaussians.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 #include "geometry/scene/camera.h"
 #include "render/gaussian_avatar/avatar_frame.h"
-#include "render/gaussian_avatar/learning/picture_loss.h"
+#include "render/gaussian_avatar/learning/image_loss.h"
 #include "render/image/image.h"
 #include "render/image/pixel_box.h"
 
 namespace bodyloom {
 
 struct TrainingView {
-  int time = 0;  ///< which frame of the clip
+  int time = 0;  ///< frame of the clip
   AvatarFrame frame;
-  /// The last bones of the frame, K×12 each, as other runs of the garment's simulation have them; the run to learn from
-  /// changes from one time that the view comes to the next.
+  /// The garment's bones, K×12 each, from other runs of its simulation; training cycles through the runs each time the
+  /// view is visited.
   std::vector<std::vector<float>> other_cloth;
   Camera camera;                ///< without distortion
-  PixelBox window;              ///< around the person, inside the picture
+  PixelBox window;              ///< around the person, inside the image
   std::vector<uint8_t> pixels;  ///< of the window, row-major: blue, green, red, PersonAt
   int person_pixels = 0;
 
@@ -30,17 +30,16 @@ struct TrainingView {
   }
 };
 
-/// What of the person a pixel of the picture shows: 0 nothing, else a label of clothes and skin, 1 where there are
-/// none.
+/// Person label of a pixel of the image: 0 off the person, else a label of clothes and skin, or 1 without labels.
 using PersonAt = std::function<uint8_t(int x, int y)>;
 
-/// The part of `picture` around the person: the smallest box that holds its pixels in `search` (clipped to the picture)
-/// and `body`, with `margin` pixels around it. Pixels outside of `search` count as not the person's. A frame without
-/// the person has an empty window. The caller sets time, frame and camera.
-TrainingView CutTrainingView(const Image& picture, const PersonAt& person_at, const PixelBox& search,
+/// Cuts the part of `image` around the person: the bounding box of its pixels in `search` (clipped to the image) and of
+/// `body`, with a margin of `margin` pixels. Pixels outside `search` count as background. A frame without the person
+/// has an empty window. The caller sets time, frame and camera.
+TrainingView CutTrainingView(const Image& image, const PersonAt& person_at, const PixelBox& search,
                              const PixelBox& body, int margin);
 
-/// The view as what a picture is compared with. Keeps the memory of `truth`.
-void FillTruth(const TrainingView& view, PictureTruth* truth);
+/// Converts the view to the ground truth of ImageLoss. Reuses the memory of `truth`.
+void FillTruth(const TrainingView& view, ImageTruth* truth);
 
 }  // namespace bodyloom

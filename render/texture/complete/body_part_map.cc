@@ -60,7 +60,7 @@ int BodyPartOf(int chart) {
 
 int LimbOf(int chart) {
   const int part = BodyPartOf(chart);
-  return part < kHandR ? part : kHandR + (part - kHandR) / 2;  // from the hands on, parts come in pairs
+  return part < kHandR ? part : kHandR + (part - kHandR) / 2;  // from the hands on, parts form left–right pairs
 }
 
 std::array<float, 3> BodyPartColour(int part) {

@@ -13,7 +13,7 @@ bool Has(std::span<const uint8_t> labels, uint8_t label) {
   return std::find(labels.begin(), labels.end(), label) != labels.end();
 }
 
-/// The commonest label of the nearest shown texels, by texel.
+/// The most frequent label of the nearest seen texels, by texel.
 std::vector<uint8_t> NearestLabels(const TexelNeighbours& neighbours, std::span<const uint8_t> labels) {
   const size_t texels = labels.size();
   std::vector<float> shares(kPhotoLabels * texels);
@@ -30,7 +30,7 @@ std::vector<uint8_t> NearestLabels(const TexelNeighbours& neighbours, std::span<
   return nearest;
 }
 
-/// `colours` of the nearest texels of `sources` at those of `wanted`; nothing without sources.
+/// Copies `colours` of the nearest texels of `sources` to those of `wanted`; does nothing without sources.
 void TakeColours(const TexelNeighbours& neighbours, std::span<const uint8_t> sources, std::span<const uint8_t> wanted,
                  std::span<float> colours) {
   const size_t texels = sources.size();
@@ -85,7 +85,7 @@ std::vector<uint8_t> GuessUnseen(const TexelNeighbours& neighbours, std::span<ui
   return guessed;
 }
 
-void CallFacesBehindHair(std::span<const uint8_t> back_of_head, std::span<uint8_t> labels) {
+void RelabelBackOfHeadAsHair(std::span<const uint8_t> back_of_head, std::span<uint8_t> labels) {
   BODYLOOM_CHECK(back_of_head.size() == labels.size(), "labels of the back of the head: ", labels.size(), ", expected ",
                  back_of_head.size());
   if (Has(labels, kHairLabel)) return;

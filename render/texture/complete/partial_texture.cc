@@ -18,7 +18,7 @@ void CheckSizes(const PhotoFrame& frame) {
   const size_t pixels = Area(frame.size), texels = Area(frame.texture_size);
   BODYLOOM_CHECK(
       frame.size > 0 && frame.image.size() == 3 * pixels && (frame.labels.empty() || frame.labels.size() == pixels),
-      "partial texture: a picture of ", frame.image.size(), " values with ", frame.labels.size(),
+      "partial texture: an image of ", frame.image.size(), " values with ", frame.labels.size(),
       " labels, expected 3 x ", frame.size, "² and ", frame.size, "²");
   BODYLOOM_CHECK(
       frame.texture_size > 0 && frame.texel_pixels.size() == 2 * texels && frame.texel_cosine.size() == texels,
@@ -126,7 +126,7 @@ void GuessTexture(const TexelNeighbours& neighbours, PartialTexture* texture) {
   BODYLOOM_CHECK(texture->size == neighbours.texture_size(), "texture guess: a texture of ", texture->size,
                  " texels a side, expected ", neighbours.texture_size());
   std::vector<uint8_t> labels = texture->labels;
-  CallFacesBehindHair(neighbours.back_of_head(), labels);
+  RelabelBackOfHeadAsHair(neighbours.back_of_head(), labels);
   texture->guessed = GuessUnseen(neighbours, labels, texture->colour);
 }
 

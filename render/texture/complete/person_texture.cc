@@ -67,9 +67,9 @@ PersonTexture::PersonTexture(const BodyModel& body, const Track& track, const Pe
       margin_px_(options.margin_px >= 0 ? options.margin_px : HundredthOfTheHeight(track)),
       extractor_(body, ExtractOptions(options, margin_px_)) {}
 
-bool PersonTexture::Add(int t, const Image& picture) {
+bool PersonTexture::Add(int t, const Image& image) {
   if (!HasFitOfItsOwn(track_, t)) return false;
-  extractor_.Add(picture, TrackVertices(body_, track_, t), track_.CameraAt(t), t);
+  extractor_.Add(image, TrackVertices(body_, track_, t), track_.CameraAt(t), t);
   return true;
 }
 

@@ -9,11 +9,11 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kMargin = 0.02;        ///< of the pictures, on every side
-constexpr double kSameSurfaceM = 0.01;  ///< two points of one line of sight that are nearer are the same
-constexpr double kFarM = 10;            ///< the body stands so far from the cameras
+constexpr double kMargin = 0.02;        ///< of the images, on every side
+constexpr double kSameSurfaceM = 0.01;  ///< points of one line of sight within this distance are the same
+constexpr double kFarM = 10;            ///< distance of the body from the cameras
 
-/// Orthographic, square, with x = 0 in its middle; y points down there.
+/// Orthographic square camera with x = 0 at its centre; y points down.
 Camera RestCamera(const MatrixX3d& vertices) {
   const double top = vertices.col(1).maxCoeff(), bottom = vertices.col(1).minCoeff();
   const double half = std::max((top - bottom) / 2, vertices.col(0).cwiseAbs().maxCoeff());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A body at rest (x to its left, y up, z to the front) seen from the front and from behind, orthographically: what
-/// lies at the same place from both sides, and what lies at one height.
+/// A body at rest (x to its left, y up, z to the front) seen from the front and from behind, orthographically, to find
+/// points at the same position from both sides or at the same height.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,17 +18,17 @@ enum class RestSide { kFront, kBack };
 
 class RestViews {
  public:
-  static constexpr int kPixels = 1024;  ///< of both pictures, a side
+  static constexpr int kPixels = 1024;  ///< side of both images
 
   /// Borrows the faces. `rest_vertices`: V×3, metres.
   RestViews(const MatrixX3d& rest_vertices, const MatrixX3i& faces);
 
-  /// The side that sees the point of the surface; none for one in a fold.
+  /// The side that sees the surface point; none for a point in a fold.
   [[nodiscard]] std::optional<RestSide> SideOf(const Eigen::Vector3d& point) const;
-  /// What a side sees where `point` is, whatever its depth; face −1: nothing.
+  /// The surface point that a side sees at the position of `point`, for any depth; face −1: none.
   [[nodiscard]] SurfacePoint At(RestSide side, const Eigen::Vector3d& point) const;
 
-  /// Both pictures have x to the body's left and y down, so that what lies at one place of the body has one pixel.
+  /// Pixel of a point: both images have x to the body's left and y down, so it is the same in both.
   [[nodiscard]] Eigen::Vector2i PixelOf(const Eigen::Vector3d& point) const;
   [[nodiscard]] Eigen::Vector3d PointAt(int x, int y) const;  ///< on the plane z = 0
 

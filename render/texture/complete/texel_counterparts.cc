@@ -29,7 +29,7 @@ TexelCounterparts FindTexelCounterparts(const RestViews& views, const MatrixX3d&
     const RestSide other = *side == RestSide::kFront ? RestSide::kBack : RestSide::kFront;
     counterparts[kMirror][i] = views.At(*side, mirrored);
     counterparts[kBehind][i] = views.At(other, point);
-    counterparts[kAcross][i] = views.At(other, mirrored);
+    counterparts[kMirroredBack][i] = views.At(other, mirrored);
   }
   return counterparts;
 }
@@ -63,7 +63,7 @@ NearestAroundLimb::NearestAroundLimb(const BodyModel& body, const RestViews& vie
       }
     }
   }
-  // What lies at the edge of what is known has a little of its neighbour in it: the inside is looked for first.
+  // Known pixels near the boundary mix with their neighbours: interior pixels are preferred.
   std::vector<uint8_t> inside(known.size(), 0);
   for (int y = kEdge; y + kEdge < kSide; ++y) {
     for (int x = kEdge; x + kEdge < kSide; ++x) {
@@ -74,7 +74,7 @@ NearestAroundLimb::NearestAroundLimb(const BodyModel& body, const RestViews& vie
       inside[at(x, y)] = all ? 1 : 0;
     }
   }
-  // Along a line, the last known pixel of the same kind (arm or not) as seen from either end.
+  // Along a line, the last known pixel of the same kind (arm or not) from either end.
   const auto sweep = [&](bool arms, bool whole, const std::function<size_t(int, int)>& place) {
     const auto counts = [&](size_t p) {
       return (whole ? inside[p] != 0 : known[p] != kNothing) && is_arm[p] == (arms ? 1 : 0);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The points of a body that correspond to a texel's by symmetry, for guesses at what a picture does not show. Of a
-/// point that one side of the body at rest (rest_views.h) shows at (x, y):
-///   mirror       what the same side shows at (−x, y)          the other arm
-///   behind       what the other side shows at (x, y)          the back of the same arm
-///   across       what the other side shows at (−x, y)
-/// A point that neither side shows (in a fold) corresponds to nothing.
+/// Finds the points of a body that correspond to a texel's by symmetry, to guess colours of unseen texels. For a point
+/// that one side of the body at rest (rest_views.h) shows at (x, y):
+///   mirror       the point that the same side shows at (−x, y)      the other arm
+///   behind       the point that the other side shows at (x, y)      the back of the same arm
+///   across       the point that the other side shows at (−x, y)
+/// A point that neither side shows (in a fold) has no counterpart.
 #pragma once
 
 #include <array>
@@ -19,30 +19,30 @@
 
 namespace bodyloom {
 
-enum TexelCounterpart { kMirror, kBehind, kAcross, kNumCounterparts };
+enum TexelCounterpart { kMirror, kBehind, kMirroredBack, kNumCounterparts };
 
-/// One a texel of the table; face −1: none.
+/// One entry per texel of the table; face −1: none.
 using TexelCounterparts = std::array<std::vector<SurfacePoint>, kNumCounterparts>;
 
-/// The texels' points, n×3, from a body at rest (V×3, metres).
+/// Positions of the texels, n×3, on a body at rest (V×3, metres).
 MatrixX3d TexelPoints(const MatrixX3d& rest_vertices, const MatrixX3i& faces, const UvTexelTable& table);
 
-/// `points`: TexelPoints() of the body that `views` see.
+/// `points`: TexelPoints() of the body of `views`.
 TexelCounterparts FindTexelCounterparts(const RestViews& views, const MatrixX3d& points);
 
-// The nearest known point around a limb or the trunk: clothes change along a limb far more often than around it.
+// Finds the nearest known point around a limb or the trunk: clothes vary along a limb far more than around it.
 //
-// In the two pictures of the body at rest (rest_views.h) the arms lie along x, all else along y. A pixel looks along
-// the other axis, in both pictures, for the nearest that shows something known: a shirt's side finds the shirt at its
-// own height and never the trousers.
+// In the two images of the body at rest (rest_views.h) the arms lie along x, all else along y. The nearest known pixel
+// is searched along the other axis in both images, so that the side of a shirt finds the shirt at its own height, never
+// the trousers.
 
 class NearestAroundLimb {
  public:
-  /// `is_known`: whether something is known of a point of the surface. Borrows `views`.
+  /// `is_known`: returns true for known points of the surface. Borrows `views`.
   NearestAroundLimb(const BodyModel& body, const RestViews& views,
                     const std::function<bool(const SurfacePoint&)>& is_known);
 
-  /// The nearest known point for a point of the body at rest; face −1: none at its height.
+  /// The known point nearest to a point of the body at rest; face −1: none at its height.
   [[nodiscard]] SurfacePoint At(const Eigen::Vector3d& point) const;
 
  private:

@@ -60,7 +60,7 @@ TexelNeighbours::TexelNeighbours(int texture_size, std::span<const uint8_t> texe
     level.num_cells = static_cast<int>(cells.size());
     levels_.push_back(std::move(level));
   }
-  // Coarser than the limb's last cells: the limb as a whole, then everything.
+  // Two coarser levels: the whole limb, then the whole body.
   Level limbs{{}, kLimbs};
   for (const int k : texels_) limbs.cell.push_back(LimbOf(texel_parts[k]));
   levels_.push_back(std::move(limbs));

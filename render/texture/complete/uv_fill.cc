@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMaxLevels = 14;
 constexpr int kTip = 8;     ///< texels
-constexpr int kSweeps = 4;  ///< averages with the neighbours on each level
+constexpr int kSweeps = 4;  ///< averages with neighbours per level
 
 void CheckMaps(size_t pixels, int num_channels, size_t values) {
   BODYLOOM_CHECK(num_channels > 0 && values == pixels * num_channels, "filling: maps of ", values, " values, expected ",
@@ -37,7 +37,7 @@ struct GutterTaps {
     for (size_t i = 0; i < table.size(); ++i) {
       if (!table.in_gutter[i]) continue;
       UvTaps all = TapsAt(table, UvPointAt(body, charts, table.face[i], table.barycentric[i].cast<double>()));
-      UvTaps own;  // only texels that are no gutter themselves
+      UvTaps own;  // only texels that are not in the gutter
       double sum = 0;
       for (int k = 0; k < all.count; ++k) {
         if (!inside[all.pixel[k]] || all.weight[k] <= 1e-6) continue;
@@ -50,7 +50,7 @@ struct GutterTaps {
       if (own.count > 0) taps.emplace_back(table.pixel[i], own);
     }
   }
-  /// For the tips of charts, where no texel centre lies near the point: the texel nearest in the map of its own chart.
+  /// For tips of charts without a texel centre near the point: the nearest texel of the chart in the map.
   static UvTaps Nearest(const UvTexelTable& table, const std::vector<char>& inside, int pixel) {
     UvTaps taps;
     const int x = pixel % table.width, y = pixel / table.width;
@@ -67,7 +67,7 @@ struct GutterTaps {
     }
     return taps;
   }
-  /// known: empty, or a byte a texel.
+  /// known: empty, or one byte per texel.
   void Fill(size_t pixels, int num_channels, std::span<float> maps, std::span<const uint8_t> known = {}) const {
     for (const auto& [pixel, own] : taps) {
       double total = 0;
@@ -105,7 +105,7 @@ struct PyramidFill::Pyramid {
     const UvGraph graph = BuildUvGraph(body, table);
     pixel = graph.pixel;
     levels.push_back({{}, graph.begin, graph.neighbour});
-    // A cell: its chart and its place on the level's grid.
+    // A cell: its chart and its position on the level's grid.
     std::vector<std::array<int, 3>> cells;
     for (const int p : pixel) cells.push_back({table.chart_at[p], p / table.width, p % table.width});
     while (static_cast<int>(levels.size()) < kMaxLevels && levels.back().size() > 1) {
@@ -144,7 +144,7 @@ struct PyramidFill::Pyramid {
     }
   }
 
-  /// Averages nodes that are not known with their filled neighbours, kSweeps times.
+  /// Averages unknown nodes with their filled neighbours, kSweeps times.
   static void Smooth(const Level& level, const std::vector<float>& weight, std::vector<float>* value) {
     std::vector<float> next = *value;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
@@ -159,7 +159,7 @@ struct PyramidFill::Pyramid {
     }
   }
 
-  /// On the coarsest level: what is not known takes its neighbours' mean, outwards; what cannot be reached, `mean`.
+  /// On the coarsest level: unknown nodes take their neighbours' mean, outwards; unreachable ones `mean`.
   static void Flood(const Level& level, const std::vector<float>& weight, float mean, std::vector<float>* value) {
     std::vector<char> filled(weight.size());
     for (size_t i = 0; i < weight.size(); ++i) filled[i] = weight[i] > 0;
@@ -238,7 +238,7 @@ void PyramidFill::Fill(std::span<const uint8_t> known, int num_channels, std::sp
 
 struct LaplaceFill::System {
   size_t num_pixels;
-  std::vector<int> hole_pixel, mean_pixel;    ///< solved for; nothing known is connected to it
+  std::vector<int> hole_pixel, mean_pixel;    ///< unknowns; holes not connected to known texels
   std::vector<std::pair<int, int>> boundary;  ///< row, known pixel
   std::vector<int> known_pixel;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
@@ -249,7 +249,7 @@ struct LaplaceFill::System {
     BODYLOOM_CHECK(known.size() == num_pixels, "filling: a mask of ", known.size(), " texels, expected ", num_pixels);
     const UvGraph graph = BuildUvGraph(body, table);
     const int n = graph.num_nodes();
-    // Holes that something known is connected to.
+    // Holes connected to known texels.
     std::vector<char> reached(n, 0);
     std::vector<int> front;
     for (int a = 0; a < n; ++a) {
@@ -337,7 +337,7 @@ void FillGutter(const BodyModel& body, const UvTexelTable& table, std::span<cons
 
 namespace {
 
-/// The node nearest to a place on the atlas, at most a texel away; −1: none.
+/// The node nearest to a point of the atlas, at most a texel away; −1: none.
 int NodeNear(const UvTexelTable& table, const std::vector<int>& node_at, const UvPoint& point) {
   const double x = point.uv.x() * table.width - 0.5, y = (1 - point.uv.y()) * table.height - 0.5;
   const int cx = static_cast<int>(std::lround(x)), cy = static_cast<int>(std::lround(y));

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Fills the holes of UV maps (texels that no frame has seen) smoothly over the surface, seams included: both ways
-/// below work on the graph of texels (render/texture/complete/uv_fill.h), not on the picture.
+/// Fills the holes of UV maps (unseen texels) smoothly over the surface, across seams: both methods work on the graph
+/// of texels (UvGraph), not on the image grid.
 ///
-/// PyramidFill: pull–push. Texels are merged into ever coarser cells (2×2 of one chart a level); each cell's mean of
-/// what is known flows back down into what is not, smoothed by a few averages with its neighbours on every level.
-/// Linear in the number of texels; made once for a table, any number of maps and masks.
+/// PyramidFill: pull–push. Texels are merged into coarser cells (2×2 of one chart per level); means of known texels
+/// propagate back down to unknown ones, smoothed by a few averages with neighbours on every level. Linear in the number
+/// of texels; built once per table for any number of maps and masks.
 ///
-/// LaplaceFill: the exact smoothest filling, the solution of Σ_neighbours (x_i − x_j) = 0 at every hole with the known
-/// texels held; the matrix is factored once for a mask, each map is a back-substitution.
+/// LaplaceFill: the harmonic solution, Σ_neighbours (x_i − x_j) = 0 at every hole with known texels fixed; the matrix
+/// is factored once per mask, each map is a back-substitution.
 ///
-/// Both: known texels keep their values; constants stay constants; values never leave the range of the known ones;
-/// parts of the surface that nothing known is connected to take the mean of all known texels; where nothing at all is
-/// known, the map is left alone. The gutter is filled from the surface it shows.
+/// Both: known texels keep their values; constants are reproduced; values stay within the range of the known ones;
+/// parts of the surface not connected to known texels take the mean of all known ones; a map without known texels is
+/// unchanged. The gutter is filled from the surface it shows.
 #pragma once
 
 #include <memory>
@@ -23,27 +23,27 @@
 
 namespace bodyloom {
 
-// The texels of a UV map as a graph of the surface: neighbours in the map, and across seams the texel that lies on the
-// other side, found through the gutter (geometry/uv_maps/uv_texels.h). What spreads along it knows no charts.
+// Texels of a UV map as a graph of the surface: neighbours in the map and, found through the gutter
+// (geometry/uv_maps/uv_texels.h), across seams.
 
 struct UvGraph {
   std::vector<int> pixel;      ///< pixel of each node: the texels inside a chart, in the order of rows
   std::vector<int> begin;      ///< nodes + 1
   std::vector<int> neighbour;  ///< nodes, ascending at each
-  int num_seam_links = 0;      ///< edges that cross a seam
+  int num_seam_links = 0;      ///< edges across a seam
   [[nodiscard]] int num_nodes() const { return static_cast<int>(pixel.size()); }
 };
 
-/// The table must have a gutter (at least 1), else no seam is crossed.
+/// Without a gutter (at least 1) of the table no seam is crossed.
 UvGraph BuildUvGraph(const BodyModel& body, const UvTexelTable& table);
 
 class PyramidFill {
  public:
-  /// Borrows nothing. The table must have a gutter for seams to be crossed.
+  /// Borrows nothing. Seams are crossed only if the table has a gutter.
   PyramidFill(const BodyModel& body, const UvTexelTable& table);
   ~PyramidFill();
 
-  /// Fills `maps` (num_channels planes) in place; known: one byte a texel, 0: hole. Throws std::invalid_argument when
+  /// Fills `maps` (num_channels planes) in place; known: one byte per texel, 0: hole. Throws std::invalid_argument when
   /// sizes do not fit.
   void Fill(std::span<const uint8_t> known, int num_channels, std::span<float> maps) const;
 
@@ -65,8 +65,8 @@ class LaplaceFill {
   std::unique_ptr<System> system_;
 };
 
-/// Gives each gutter texel the value of the surface point it shows, from the known texels around that point; where none
-/// is known it stays as it is. Without it a map that was gathered texel by texel is dark along its seams.
+/// Sets each gutter texel to the value of the surface point it shows, from the known texels around that point; without
+/// any it stays. Otherwise a gathered map would be dark along its seams.
 void FillGutter(const BodyModel& body, const UvTexelTable& table, std::span<const uint8_t> known, int num_channels,
                 std::span<float> maps);
 

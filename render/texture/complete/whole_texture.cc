@@ -23,18 +23,18 @@ namespace {
 
 constexpr std::array<float, kNumCounterparts> kPreference = {1.0F, 0.7F, 0.5F};
 constexpr std::array<TexelSource, kNumCounterparts> kSourceOf = {TexelSource::kMirror, TexelSource::kBehind,
-                                                                 TexelSource::kAcross};
-constexpr double kLeastSkinShare = 0.1;  ///< of the hands' seen texels
-constexpr double kLeastTapWeight = 1e-3;
+                                                                 TexelSource::kMirroredBack};
+constexpr double kMinSkinShare = 0.1;  ///< of the hands' seen texels
+constexpr double kMinTapWeight = 1e-3;
 constexpr double kNoiseOfLines = 0.08;  ///< of colours, largest channel
-constexpr double kHairIsKept = 16;      ///< times the screening: skin around the hair is not to run into it
-constexpr double kAroundIsKept = 0.25;  ///< likewise: lines that were carried around a limb are to run into each other
+constexpr double kHairIsKept = 16;      ///< factor of the screening: skin must not bleed into hair
+constexpr double kAroundIsKept = 0.25;  ///< likewise: lines extended around a limb should blend
 constexpr double kTolerance = 1e-3;
-constexpr int kMostIterations = 100;
-constexpr double kLeastWeight = 0.5;     ///< of a lookup's taps that were seen
-constexpr double kLeastHairShare = 0.1;  ///< of the scalp's seen texels
+constexpr int kMaxIterations = 100;
+constexpr double kMinWeight = 0.5;     ///< minimum weight of a lookup's seen taps
+constexpr double kMinHairShare = 0.1;  ///< of the scalp's seen texels
 
-/// The largest difference of a channel.
+/// Maximum difference over the channels.
 double Contrast(const ChannelTriple& a, const ChannelTriple& b) {
   double contrast = 0;
   for (size_t c = 0; c < 3; ++c) contrast = std::max<double>(contrast, std::abs(a[c] - b[c]));
@@ -56,7 +56,7 @@ class Completion {
         fill_(body, table),
         pixels_(seen.confidence.size()) {
     result_.bgr.assign(3 * pixels_, 0.0F);
-    result_.sources.assign(pixels_, TexelSource::kNowhere);
+    result_.sources.assign(pixels_, TexelSource::kEmpty);
   }
 
   WholeTexture Run(const MatrixX3d& rest_vertices) {
@@ -106,15 +106,15 @@ class Completion {
       if (seen_.confidence[pixel] > 0) confidence.push_back(seen_.confidence[pixel]);
     });
     if (confidence.empty()) return false;
-    const double least = options_.trust * Percentile(confidence, 90);
+    const double minimum = options_.trust * Percentile(confidence, 90);
     ForEachTexel([&](size_t, size_t pixel) {
-      if (!(seen_.confidence[pixel] > 0) || seen_.confidence[pixel] < least) return;
+      if (!(seen_.confidence[pixel] > 0) || seen_.confidence[pixel] < minimum) return;
       Set(pixel, {seen_.bgr[pixel], seen_.bgr[pixels_ + pixel], seen_.bgr[2 * pixels_ + pixel]}, TexelSource::kSeen);
     });
     return true;
   }
 
-  /// The face's colour where enough of the hands is like it (no gloves), else the hands' own.
+  /// The face's colour if enough of the hands is similar (no gloves), else the hands' own.
   [[nodiscard]] ChannelTriple HandColour(const std::vector<ChannelTriple>& hands) const {
     std::vector<ChannelTriple> face;
     ForEachTexel([&](size_t i, size_t pixel) {
@@ -125,12 +125,12 @@ class Completion {
       const auto like_skin = std::count_if(hands.begin(), hands.end(), [&](const ChannelTriple& colour) {
         return Contrast(colour, skin) <= options_.hand_contrast;
       });
-      if (static_cast<double>(like_skin) >= kLeastSkinShare * static_cast<double>(hands.size())) return skin;
+      if (static_cast<double>(like_skin) >= kMinSkinShare * static_cast<double>(hands.size())) return skin;
     }
     return MedianColour(hands);
   }
 
-  /// A hand's seen texels of other colours are not the hand.
+  /// Discards seen texels of the hands with other colours.
   void DistrustHands() {
     std::vector<ChannelTriple> colours;
     std::vector<size_t> texels;
@@ -143,24 +143,24 @@ class Completion {
     const ChannelTriple hand = HandColour(colours);
     for (size_t k = 0; k < texels.size(); ++k) {
       if (Contrast(colours[k], hand) > options_.hand_contrast) {
-        result_.sources[texels[k]] = TexelSource::kNowhere;
+        result_.sources[texels[k]] = TexelSource::kEmpty;
       }
     }
   }
 
-  /// What a garment hides shows itself beside a hem that is not where the simulation has it: more often the hem.
+  /// Discards texels under a garment: they seem visible only where the simulated hem is off, and mostly show the hem.
   void DistrustUnderGarment() {
     ForEachTexel([&](size_t i, size_t pixel) {
-      if (IsSeen(pixel) && RegionOf(i) == BodyRegion::kUnderGarment) result_.sources[pixel] = TexelSource::kNowhere;
+      if (IsSeen(pixel) && RegionOf(i) == BodyRegion::kUnderGarment) result_.sources[pixel] = TexelSource::kEmpty;
     });
   }
 
-  /// Whether both are of the loose garment, or both of the body.
+  /// True if both are of the loose garment or both of the body.
   [[nodiscard]] bool MayLend(const SurfacePoint& from, size_t to) const {
     return (RegionOf(from) == BodyRegion::kGarment) == (RegionOf(to) == BodyRegion::kGarment);
   }
 
-  /// visit(pixel, weight) for the texels of a bilinear lookup.
+  /// Calls visit(pixel, weight) for the texels of a bilinear lookup.
   template <typename Visit>
   void ForEachTap(const SurfacePoint& point, const Visit& visit) const {
     const UvTaps taps = TapsAt(table_, UvPointAt(body_, charts_, point.face, point.barycentric));
@@ -171,7 +171,7 @@ class Completion {
     ChannelTriple colour{};
     float confidence = 0;  ///< 0: not seen there
   };
-  /// What was seen at a counterpart of texel i.
+  /// The seen colour at a counterpart of texel i.
   [[nodiscard]] Lookup LookUp(size_t i, const SurfacePoint& counterpart, TexelCounterpart kind) const {
     Lookup found;
     if (counterpart.face < 0 || !MayLend(counterpart, i)) return found;
@@ -186,7 +186,7 @@ class Completion {
       confidence += share * seen_.confidence[pixel];
       for (size_t c = 0; c < 3; ++c) colour[c] += share * result_.bgr[c * pixels_ + pixel];
     });
-    if (!(weight >= kLeastWeight)) return found;
+    if (!(weight >= kMinWeight)) return found;
     for (size_t c = 0; c < 3; ++c) found.colour[c] = static_cast<float>(colour[c] / weight);
     found.confidence = static_cast<float>(confidence / weight);
     return found;
@@ -221,15 +221,15 @@ class Completion {
       std::copy_if(scalp.begin(), scalp.end(), std::back_inserter(hair),
                    [&](const ChannelTriple& colour) { return Contrast(colour, skin) > options_.hair_contrast; });
     }
-    if (static_cast<double>(hair.size()) < kLeastHairShare * static_cast<double>(scalp.size())) hair = scalp;
+    if (static_cast<double>(hair.size()) < kMinHairShare * static_cast<double>(scalp.size())) hair = scalp;
     const ChannelTriple colour = MedianColour(hair);
     ForEachTexel([&](size_t i, size_t pixel) {
-      if (result_.sources[pixel] != TexelSource::kNowhere || RegionOf(i) != BodyRegion::kScalp) return;
+      if (result_.sources[pixel] != TexelSource::kEmpty || RegionOf(i) != BodyRegion::kScalp) return;
       Set(pixel, colour, TexelSource::kHair);
     });
   }
 
-  /// As the shins are: skin, tights or trousers.
+  /// Guesses the colour of the shins: skin, tights or trousers.
   void GuessUnderGarment() {
     std::vector<ChannelTriple> below;
     ForEachTexel([&](size_t i, size_t pixel) {
@@ -238,15 +238,15 @@ class Completion {
     if (below.empty()) return;
     const ChannelTriple colour = MedianColour(below);
     ForEachTexel([&](size_t i, size_t pixel) {
-      if (RegionOf(i) == BodyRegion::kUnderGarment) Set(pixel, colour, TexelSource::kAround);
+      if (RegionOf(i) == BodyRegion::kUnderGarment) Set(pixel, colour, TexelSource::kLimbNeighbour);
     });
   }
 
-  /// Whether the texels around a point hold a colour of their own, seen or guessed.
+  /// True if the texels around a point have a seen or guessed colour.
   [[nodiscard]] bool IsColoured(const SurfacePoint& point) const {
     if (IsOfHead(RegionOf(point))) return false;
     bool any = false;
-    ForEachTap(point, [&](size_t pixel, double) { any = any || result_.sources[pixel] != TexelSource::kNowhere; });
+    ForEachTap(point, [&](size_t pixel, double) { any = any || result_.sources[pixel] != TexelSource::kEmpty; });
     return any;
   }
 
@@ -254,43 +254,43 @@ class Completion {
     const NearestAroundLimb nearest(body_, views, [this](const SurfacePoint& point) { return IsColoured(point); });
     std::vector<std::pair<size_t, ChannelTriple>> guesses;
     ForEachTexel([&](size_t i, size_t pixel) {
-      if (result_.sources[pixel] != TexelSource::kNowhere || IsOfHead(RegionOf(i))) return;
+      if (result_.sources[pixel] != TexelSource::kEmpty || IsOfHead(RegionOf(i))) return;
       const SurfacePoint found = nearest.At(points.row(static_cast<Eigen::Index>(i)).transpose());
       if (found.face < 0 || !MayLend(found, i)) return;
       double weight = 0;
       ChannelTriple colour{};
       ForEachTap(found, [&](size_t tap, double share) {
-        if (result_.sources[tap] == TexelSource::kNowhere) return;
+        if (result_.sources[tap] == TexelSource::kEmpty) return;
         weight += share;
         for (size_t c = 0; c < 3; ++c) colour[c] += static_cast<float>(share) * result_.bgr[c * pixels_ + tap];
       });
-      if (!(weight > kLeastTapWeight)) return;
+      if (!(weight > kMinTapWeight)) return;
       for (float& value : colour) value /= static_cast<float>(weight);
       guesses.emplace_back(pixel, colour);
     });
-    for (const auto& [pixel, colour] : guesses) Set(pixel, colour, TexelSource::kAround);
+    for (const auto& [pixel, colour] : guesses) Set(pixel, colour, TexelSource::kLimbNeighbour);
   }
 
   void Spread() {
     std::vector<uint8_t> known(pixels_, 0);
-    ForEachTexel([&](size_t, size_t pixel) { known[pixel] = result_.sources[pixel] != TexelSource::kNowhere ? 1 : 0; });
+    ForEachTexel([&](size_t, size_t pixel) { known[pixel] = result_.sources[pixel] != TexelSource::kEmpty ? 1 : 0; });
     fill_.Fill(known, 3, result_.bgr);
     ForEachTexel([&](size_t, size_t pixel) {
-      if (known[pixel] == 0) result_.sources[pixel] = TexelSource::kSpread;
+      if (known[pixel] == 0) result_.sources[pixel] = TexelSource::kSmoothFill;
     });
   }
 
   /// An edge of the graph from a node that was not seen.
   struct Link {
-    bool joins = true;      ///< false: one thing ends here
+    bool joins = true;      ///< false: boundary between materials
     bool is_alike = false;  ///< both guessed in the same way
   };
 
   [[nodiscard]] Link LinkOf(size_t pixel, size_t other) const {
     const TexelSource a = result_.sources[pixel], b = result_.sources[other];
-    if (a == TexelSource::kSpread || b == TexelSource::kSpread) return {};
-    if (a == b && a != TexelSource::kAround) return {true, true};
-    // Lines that were carried around a limb are joined where they differ by the noise of a picture, not across a hem.
+    if (a == TexelSource::kSmoothFill || b == TexelSource::kSmoothFill) return {};
+    if (a == b && a != TexelSource::kLimbNeighbour) return {true, true};
+    // Lines extended around a limb are joined if they differ by image noise only, not across a hem.
     if (a == b) return {Contrast(ColourAt(pixel), ColourAt(other)) <= kNoiseOfLines, false};
     return {Contrast(ColourAt(pixel), ColourAt(other)) <= options_.largest_step, false};
   }
@@ -311,10 +311,10 @@ class Completion {
     for (int u = 0; u < count; ++u) {
       const int n = node_of[u];
       const auto pixel = static_cast<size_t>(graph.pixel[n]);
-      const bool guessed = result_.sources[pixel] != TexelSource::kSpread;
+      const bool guessed = result_.sources[pixel] != TexelSource::kSmoothFill;
       double diagonal = guessed ? screening : 0;
       if (result_.sources[pixel] == TexelSource::kHair) diagonal *= kHairIsKept;
-      if (result_.sources[pixel] == TexelSource::kAround) diagonal *= kAroundIsKept;
+      if (result_.sources[pixel] == TexelSource::kLimbNeighbour) diagonal *= kAroundIsKept;
       for (int c = 0; c < 3; ++c) {
         start(u, c) = result_.bgr[c * pixels_ + pixel];
         right(u, c) += diagonal * start(u, c);
@@ -332,7 +332,7 @@ class Completion {
           if (link.is_alike) right(u, c) += start(u, c) - other;
         }
       }
-      // A texel that is joined to nothing keeps its colour.
+      // A texel without joined neighbours keeps its colour.
       if (!(diagonal > 0)) diagonal = 1, right.row(u) = start.row(u);
       entries.emplace_back(u, u, diagonal);
     }
@@ -340,10 +340,10 @@ class Completion {
     matrix.setFromTriplets(entries.begin(), entries.end());
     Eigen::MatrixXd solution(count, 3);
     ParallelFor(3, 3, [&](int c) {
-      // One solver each: it keeps the count of its iterations.
+      // One solver per channel: it stores its iteration count.
       Eigen::ConjugateGradient<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::Lower | Eigen::Upper> solver;
       solver.setTolerance(kTolerance);
-      solver.setMaxIterations(kMostIterations);
+      solver.setMaxIterations(kMaxIterations);
       solver.compute(matrix);
       solution.col(c) = solver.solveWithGuess(right.col(c), start.col(c));
     });

@@ -1,29 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A whole texture from what photos show of a person: every texel that was not seen is guessed, and says from what.
+/// Completes the texture of a person seen in photos: every unseen texel is guessed, and its source recorded
+/// (TexelSource).
 ///
-///   seen     confidence at least `trust` times the 90th percentile of all (a small person's is low everywhere): kept.
-///   Of hands, whose fingers are seldom where a fit has them, only
-///            what is near the face's median colour, or, where less than a fifth is, the hands' own. Nothing
-///            of what a loose garment hides: beside its hem the hem is seen more often
-///   mirror, behind, across    the colour at its counterpart (texel_counterparts.h), the counterpart that was seen best
-///            after the preferences 1, 0.7 and 0.5; a face is nobody's counterpart from behind, and a loose garment
-///            lends nothing to the body nor the body to it
-///   hair     of the scalp, not seen: the hair's colour, the median of the seen texels of the scalp that are further
-///   from
-///            the face's median colour than `hair_contrast`; of all seen texels of the scalp where fewer than a tenth
-///            are
-///   around, too: of what a loose garment hides, the median colour of the shins that are seen below it
-///   around   the nearest colour around the limb (texel_counterparts.h), on the trunk and the limbs
-///   spread   what is left: smoothly from its surroundings (render/texture/complete/uv_fill.h)
+///   seen      confidence at least `trust` times the 90th percentile of all (low throughout for small people). On
+///             hands, whose fitted fingers are often misplaced, only colours near the face's median, or near the hands'
+///             own where less than a fifth is. Never under a loose garment, where mostly its hem is seen
+///   mirror, behind, mirrored back    the colour at the counterpart (texel_counterparts.h) of highest confidence,
+///             weighted 1, 0.7 and 0.5; a face is not used as a counterpart from behind, and colours are not exchanged
+///             between a loose garment and the body
+///   hair      unseen texels of the scalp: the median of its seen texels that differ from the face's median colour by
+///             more than `hair_contrast`, or of all where fewer than a tenth do
+///   limb neighbour    the nearest colour around the limb (texel_counterparts.h), on trunk and limbs; under a loose
+///             garment the median colour of the shins seen below it
+///   smooth fill       all others: smoothly from the surroundings (render/texture/complete/uv_fill.h)
 ///
-/// Guesses g meet the seen surface, and each other, without a step: the colours x of all texels that were not seen
-/// minimise, over the graph of texels (render/texture/complete/uv_fill.h),
+/// Guesses g are blended with the seen surface and each other: the colours x of all unseen texels minimise, over the
+/// graph of texels (UvGraph, render/texture/complete/uv_fill.h),
 ///   Σ_edges ((x_i − x_j) − (g_i − g_j))² + Σ_guessed (x_i − g_i)² / reach²
-/// with g_i − g_j taken as 0 where one of the two is not guessed, or in another way, or around a limb (lines that were
-/// carried run into each other). Two texels that were seen or guessed in different ways and differ by more than
-/// `largest_step` are where one thing ends: their edge is left out; so is that of two guesses around a limb which
-/// differ by more than a picture's noise. Hair is held 16 times as firmly, what is around a limb a quarter as firmly.
-/// Solved by conjugate gradients, a hundred steps at most.
+/// with g_i − g_j = 0 if one of the two is not guessed, they are guessed in different ways, or both around a limb
+/// (extended lines blend). Edges are left out at boundaries between materials: between texels seen or guessed in
+/// different ways that differ by more than `largest_step`, and between guesses around a limb that differ by more than
+/// image noise. The screening is 16 times stronger for hair and 4 times weaker around a limb. Solved by at most a
+/// hundred steps of conjugate gradients.
 /// Source: Pérez, Gangnet, Blake, "Poisson Image Editing", 2003, with the screening of Bhat et al., 2008.
 #pragma once
 
@@ -39,22 +37,22 @@
 
 namespace bodyloom {
 
-enum class TexelSource : uint8_t { kNowhere, kSeen, kMirror, kBehind, kAcross, kHair, kAround, kSpread };
+enum class TexelSource : uint8_t { kEmpty, kSeen, kMirror, kBehind, kMirroredBack, kHair, kLimbNeighbour, kSmoothFill };
 
 struct WholeTextureOptions {
   double trust = 0.05;
-  double hair_contrast = 0.12;  ///< of colours, largest channel, 0 to 1
-  double reach = 0.03;          ///< how far a step is spread over guesses, as a share of the texture's side
-  double largest_step = 0.25;   ///< of colours, largest channel
-  double hand_contrast = 0.25;  ///< seen texels of a hand further from the hand's median colour are not trusted
+  double hair_contrast = 0.12;  ///< colour difference, maximum over channels, 0 to 1
+  double reach = 0.03;          ///< distance over which a step is blended, as a share of the texture's side
+  double largest_step = 0.25;   ///< colour difference, maximum over channels
+  double hand_contrast = 0.25;  ///< maximum difference of a hand's seen texels from its median colour
 };
 
 struct WholeTexture {
-  std::vector<float> bgr;            ///< three planes, 0 to 1; the gutter too
-  std::vector<TexelSource> sources;  ///< H·W; kNowhere where the atlas is empty, and in the gutter
+  std::vector<float> bgr;            ///< three planes, 0 to 1, including the gutter
+  std::vector<TexelSource> sources;  ///< H·W; kEmpty off the atlas and in the gutter
 };
 
-/// `rest_vertices`: the body at rest, V×3 metres; `regions`: one a vertex. Throws std::invalid_argument when sizes do
+/// `rest_vertices`: the body at rest, V×3 metres; `regions`: one per vertex. Throws std::invalid_argument when sizes do
 /// not fit, std::runtime_error when no texel was seen.
 WholeTexture MakeWholeTexture(const BodyModel& body, const UvTexelTable& table, const MatrixX3d& rest_vertices,
                               std::span<const BodyRegion> regions, const Texture& seen,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uses the bottom library alone.
+// Uses only the lowest library.
 #include <Eigen/Core>
 #include <iostream>
 

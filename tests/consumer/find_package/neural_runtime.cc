@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// LibTorch comes along with bodyloom::neural.
+// bodyloom::neural brings LibTorch with it.
 #include <iostream>
 
 #include "bodyloom/neural/base/runtime.h"

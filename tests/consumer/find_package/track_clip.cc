@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A clip is made, tracked and described with nothing but what is installed.
+// Synthesises, tracks and describes a clip using only the installed files.
 #include <iostream>
 #include <vector>
 

@@ -63,7 +63,7 @@ AvatarCheckpoint RandomCheckpoint() {
     state.poses.steps[t] = 5 + t;
   }
   state.held_out.losses = {0.5, 0.25, 0.375};
-  state.held_out.landing_step = 4000, state.held_out.landing_progress = 0.625;
+  state.held_out.cooldown_step = 4000, state.held_out.cooldown_progress = 0.625;
   state.kept = {state.body, 2500, 0.25};
   state.kept->body.parameters(7, 3) = 0.75F;
   state.kept->body.kinds[8] = GaussianKind::kLoose;
@@ -111,8 +111,8 @@ TEST(AvatarFile, ComesBackAsItWas) {
   EXPECT_EQ(back.state.poses.steps, checkpoint.state.poses.steps);
   EXPECT_FALSE(back.avatar.had_network);
   EXPECT_EQ(back.state.held_out.losses, checkpoint.state.held_out.losses);
-  EXPECT_EQ(back.state.held_out.landing_step, 4000);
-  EXPECT_EQ(back.state.held_out.landing_progress, 0.625);
+  EXPECT_EQ(back.state.held_out.cooldown_step, 4000);
+  EXPECT_EQ(back.state.held_out.cooldown_progress, 0.625);
   ASSERT_TRUE(back.state.kept.has_value());
   ExpectSameBody(back.state.kept->body, checkpoint.state.kept->body);
   EXPECT_EQ(back.state.kept->step, 2500);

@@ -138,7 +138,7 @@ TEST(RepairBody, MendsWhatMendingBrings) {
   EXPECT_EQ(body.faces, whole.faces);
 }
 
-/// What joints and landmarks take from a merged vertex goes to the one that stays, and a lower number goes first.
+/// Weights of joints and landmarks on a merged vertex move to the remaining vertex; lower indices come first.
 TEST(RepairBody, JointsAndLandmarksKeepTheirPlace) {
   BodyModelData body = ToyBodyData();
   int nose = -1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A made-up body of any size as plain arrays, and its files: the official pickle, the official .npz.
+/// A synthetic body of any size as plain arrays, and as the official pickle and .npz files.
 #pragma once
 
 #include <map>
@@ -23,15 +23,15 @@ struct BodyArrays {
   std::vector<double> hands_mean[2];  // 45 each, or empty
 };
 
-/// A tube of V vertices (columns of ten around, so faces join neighbouring rows) on SMPL's tree, extended by chains for
-/// more joints. Values are pseudo-random and the same everywhere.
+/// A tube of V vertices (rings of ten, so that faces join neighbouring rows) on SMPL's tree, extended by chains for
+/// more joints. Values are pseudo-random and identical on every platform.
 BodyArrays MakeBodyArrays(int V, int J, int B, bool with_posedirs);
 
-/// As SMPL's official files: protocol 2 of Python 2, str keys, chumpy shapedirs (a Select over a Ch) and posedirs (Ch),
-/// scipy csc J_regressor, uint32 faces and tree.
+/// Pickle in the form of SMPL's official files: protocol 2 of Python 2, str keys, chumpy shapedirs (a Select over a Ch)
+/// and posedirs (Ch), scipy csc J_regressor, uint32 faces and tree.
 std::string OfficialPickle(const BodyArrays& body);
 
-/// As smplx' .npz files.
+/// Archive in the form of smplx' .npz files.
 NpzArrays OfficialNpz(const BodyArrays& body);
 
 }  // namespace bodyloom

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// OpenMesh's Catmull–Clark subdivider as an independent judge of data_tools/body_making/subdivision.h, and the
-/// comparison of the two by geometry (OpenMesh numbers vertices and faces in an order of its own).
+/// OpenMesh's Catmull–Clark subdivider as an independent reference for data_tools/body_making/subdivision.h, and a
+/// geometric comparison of the two (OpenMesh has its own order of vertices and faces).
 #pragma once
 
 #include <string>
@@ -16,14 +16,14 @@ struct QuadMesh {
   std::vector<Quad> quads;
 };
 
-/// `levels` rounds of OpenMesh::Subdivider::Uniform::CatmullClarkT. Throws std::invalid_argument when OpenMesh refuses
-/// a quad (not manifold).
+/// Applies `levels` rounds of OpenMesh::Subdivider::Uniform::CatmullClarkT. Throws std::invalid_argument when OpenMesh
+/// rejects a quad (not manifold).
 QuadMesh SubdivideByOpenMesh(const QuadMesh& cage, int levels);
 
-/// How two quad meshes differ when vertices are matched to the nearest of the other mesh.
+/// Difference of two quad meshes with vertices matched to the nearest of the other mesh.
 struct MeshAgreement {
   double max_vertex_distance_m = 0;  ///< largest distance between matched vertices
-  int unmatched_vertices = 0;        ///< vertices whose nearest partner is taken already or farther than the tolerance
+  int unmatched_vertices = 0;        ///< without a free partner within the tolerance
   int unmatched_quads = 0;  ///< quads whose matched corners are no quad of the other mesh (cyclic order counts)
   [[nodiscard]] bool Equal() const { return unmatched_vertices == 0 && unmatched_quads == 0; }
   [[nodiscard]] std::string BriefReport() const;

@@ -125,10 +125,10 @@ MatrixX3d DualQuaternionVertices(const BodyModel& body, const BodyPose& pose) {
   MatrixX3d vertices(body.num_vertices(), 3);
   for (int v = 0; v < body.num_vertices(); ++v) {
     int pivot = -1;
-    double most = 0;
+    double maximum = 0;
     for (SparseRows::InnerIterator it(body.data().weights, v); it; ++it) {
-      if (it.value() > most) {
-        most = it.value();
+      if (it.value() > maximum) {
+        maximum = it.value();
         pivot = static_cast<int>(it.col());
       }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Promises of assets/body/RECIPE.md, section 5: what the shape components mean.
+/// Properties promised by assets/body/RECIPE.md, section 5: meaning of the shape components.
 #include <gtest/gtest.h>
 
 #include "tests/data_tools/body_making/recipe_support.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Measures of closed triangle meshes, for the tests of the built-in body's recipe.
+/// Measurements of closed triangle meshes for the tests of the built-in body's recipe.
 #pragma once
 
 #include <Eigen/Geometry>

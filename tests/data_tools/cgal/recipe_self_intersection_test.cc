@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Promise of assets/body/RECIPE.md, section 9: no self-intersection in the template nor at ±2 sd of the first three
-/// shape components. CGAL's exact predicates are the judge.
+/// Property promised by assets/body/RECIPE.md, section 9: no self-intersection of the template and at ±2 sd of the
+/// first three shape components, by CGAL's exact predicates.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>

@@ -36,9 +36,9 @@ TEST(NearestMarked, IsAsNearAsTheNearest) {
   for (size_t i = 0; i < kArea; ++i) {
     ASSERT_GE(nearest[i], 0);
     ASSERT_NE(marked[nearest[i]], 0);
-    double least = 1e9;
-    for (const size_t place : places) least = std::min(least, Distance(i, place));
-    ASSERT_LE(Distance(i, nearest[i]), 1.03 * least) << i;
+    double minimum = 1e9;
+    for (const size_t place : places) minimum = std::min(minimum, Distance(i, place));
+    ASSERT_LE(Distance(i, nearest[i]), 1.03 * minimum) << i;
   }
   EXPECT_THAT(NearestMarked(std::vector<uint8_t>(kArea, 0), kWidth, kHeight), ::testing::Each(-1));
   EXPECT_THROW(NearestMarked(marked, kWidth, kHeight + 1), std::invalid_argument);

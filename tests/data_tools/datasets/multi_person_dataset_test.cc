@@ -48,7 +48,7 @@ TEST(MultiPersonDataset, PeopleAreDividedAndStayThemselves) {
   const std::string path = folder.File("people");
   const MakeMultiPersonDatasetSummary summary = MakeSmall(path);
   EXPECT_TRUE(summary.finished);
-  EXPECT_EQ(summary.pictures, 24);
+  EXPECT_EQ(summary.images, 24);
   EXPECT_EQ(summary.pairs, 3 * 8 * 7);
   const MultiPersonDataset set = ReadMultiPersonDataset(path);
   ASSERT_EQ(set.people.size(), 3U);

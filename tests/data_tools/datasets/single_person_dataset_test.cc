@@ -195,7 +195,7 @@ TEST(SinglePersonDataset, BrokenSetsNameTheFile) {
   EXPECT_THAT(FileErrorOf("images/000006.png", [&] { SinglePersonDataset set(path); }), HasSubstr("promises 9 frames"));
 }
 
-TEST(SinglePersonDataset, BrokenPicturesAndTracksNameTheFile) {
+TEST(SinglePersonDataset, BrokenImagesAndTracksNameTheFile) {
   const TemporaryFolder folder;
   const std::string path = folder.File("set");
   WriteSample(path);
@@ -207,9 +207,9 @@ TEST(SinglePersonDataset, BrokenPicturesAndTracksNameTheFile) {
   EXPECT_THAT(FileErrorOf("labels/000002.png", [&] { (void)set.Read(2); }), HasSubstr("pixel (3, 4): found 9"));
   WriteImage(file, Image(kWidth, kHeight + 1));
   EXPECT_THAT(FileErrorOf("labels/000002.png", [&] { (void)set.Read(2); }), HasSubstr("20x16 pixels, expected 20x15"));
-  const std::string picture = ReadFileBytes(path + "/images/000001.png");
-  for (size_t n = 0; n + 30 < picture.size(); n += 61) {
-    WriteFileAtomically(path + "/images/000001.png", picture.substr(0, n));
+  const std::string image = ReadFileBytes(path + "/images/000001.png");
+  for (size_t n = 0; n + 30 < image.size(); n += 61) {
+    WriteFileAtomically(path + "/images/000001.png", image.substr(0, n));
     FileErrorOf("images/000001.png", [&] { (void)set.Read(1); });
   }
   Track track = SampleTrack();

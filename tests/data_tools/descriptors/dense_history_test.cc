@@ -48,7 +48,7 @@ class DenseHistoryTest : public ::testing::Test {
   float At(const std::vector<float>& maps, int k, int c, int x, int y) const {
     return maps[((size_t(k) * DenseHistory::kChannelsOfFrame + c) * height_ + y) * width_ + x];
   }
-  /// That of frame k of t's maps is what frame s showed, where it was in the picture.
+  /// Checks that entry k of frame t's maps is the content of frame s at its position in the image.
   void ExpectShows(int t, int k, int s) const {
     const size_t area = size_t(width_) * height_;
     std::vector<float> uv(2 * area), body(area);
@@ -134,7 +134,7 @@ TEST_F(DenseHistoryTest, BeforeARunsFirstFrameThePersonStoodStill) {
   EXPECT_TRUE(std::all_of(lost.begin(), lost.end(), [](float v) { return v == 0; }));
 }
 
-TEST_F(DenseHistoryTest, ATurnedViewIsAnotherPicture) {
+TEST_F(DenseHistoryTest, ATurnedViewIsAnotherImage) {
   PersonFramesOptions options = Small();
   options.yaw_deg.assign(ShortTrack().num_frames(), 180);
   Describe(ShortTrack());

@@ -39,7 +39,7 @@ std::vector<float> Maps(const PersonFrames& frames, int t) {
   return maps;
 }
 
-TEST(ScaleToSize, LeavesPicturesOfNearlyTheSameSizeAlone) {
+TEST(ScaleToSize, LeavesImagesOfNearlyTheSameSizeAlone) {
   EXPECT_EQ(ScaleToSize(46.9, 46.67), 1);  // two clips of one camera
   EXPECT_EQ(ScaleToSize(98.1, 100), 1);
   EXPECT_NEAR(ScaleToSize(97, 100), 0.97, 1e-12);
@@ -70,7 +70,7 @@ TEST(PersonFrames, MapsAreTheDescriptorsOfTheTrack) {
   EXPECT_FALSE(fs::exists(fs::path(::testing::TempDir()) / "motion_maps_0.npy"));
 }
 
-TEST(PersonFrames, ATurnedViewTurnsMotionAndPicture) {
+TEST(PersonFrames, ATurnedViewTurnsMotionAndImage) {
   const Track track = ShortTrack();
   PersonFramesOptions options = Small();
   const PersonFrames plain(BuiltinBody(), track, options);

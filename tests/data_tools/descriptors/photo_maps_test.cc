@@ -227,7 +227,7 @@ TEST(PhotoMaps, AFrameWithoutAResultShowsNothing) {
 
 /// A grey disc of radius 27 on black, whose "body" is a disc of radius 24: part 9 on the left, 15 on the right.
 struct DiscPhoto {
-  Image picture{96, 96};
+  Image image{96, 96};
   std::vector<uint8_t> parts = std::vector<uint8_t>(96 * 96, 0), person = parts;
   DiscPhoto() {
     for (int y = 0; y < 96; ++y) {
@@ -237,7 +237,7 @@ struct DiscPhoto {
         if (r < 24) parts[at] = x < 48 ? 9 : 15;
         person[at] = r < 27 ? 1 : 0;
         for (int c = 0; c < 3; ++c) {
-          picture.pixel(x, y)[c] = static_cast<uint8_t>((r < 27 ? 180 : 30) + 7 * ((x * 5 + y * 3 + c) % 3));
+          image.pixel(x, y)[c] = static_cast<uint8_t>((r < 27 ? 180 : 30) + 7 * ((x * 5 + y * 3 + c) % 3));
         }
       }
     }
@@ -246,7 +246,7 @@ struct DiscPhoto {
 
 TEST(PhotoSegmentation, FindsTheSilhouetteAroundTheBodyAndTheNearestPart) {
   const DiscPhoto photo;
-  const std::vector<uint8_t> labels = LabelsFromBody(photo.picture, photo.parts);
+  const std::vector<uint8_t> labels = LabelsFromBody(photo.image, photo.parts);
   int wrong = 0;
   for (size_t i = 0; i < labels.size(); ++i) {
     wrong += (labels[i] != 0) != (photo.person[i] != 0);
@@ -258,13 +258,13 @@ TEST(PhotoSegmentation, FindsTheSilhouetteAroundTheBodyAndTheNearestPart) {
     }
   }
   EXPECT_LT(wrong, 100) << "of " << labels.size();
-  EXPECT_EQ(LabelsFromBody(photo.picture, photo.parts), labels) << "k-means started elsewhere";
+  EXPECT_EQ(LabelsFromBody(photo.image, photo.parts), labels) << "k-means started elsewhere";
 }
 
 TEST(PhotoSegmentation, FallsBackOnTheBodyWhereColoursSayNothing) {
   DiscPhoto photo;
-  std::fill(photo.picture.bgr.begin(), photo.picture.bgr.end(), 90);
-  const std::vector<uint8_t> labels = LabelsFromBody(photo.picture, photo.parts);
+  std::fill(photo.image.bgr.begin(), photo.image.bgr.end(), 90);
+  const std::vector<uint8_t> labels = LabelsFromBody(photo.image, photo.parts);
   int kept = 0, body = 0;
   for (size_t i = 0; i < labels.size(); ++i) {
     body += photo.parts[i] != 0;
@@ -272,24 +272,24 @@ TEST(PhotoSegmentation, FallsBackOnTheBodyWhereColoursSayNothing) {
   }
   EXPECT_GE(kept, 0.7 * body);
   std::fill(photo.parts.begin(), photo.parts.end(), 0);
-  EXPECT_THROW(LabelsFromBody(photo.picture, photo.parts), std::invalid_argument);
+  EXPECT_THROW(LabelsFromBody(photo.image, photo.parts), std::invalid_argument);
 }
 
 TEST(PhotoSegmentation, TheBackgroundIsFilledAndTheRestKept) {
   const DiscPhoto photo;
-  const Image filled = FilledBackground(photo.picture, photo.person);
+  const Image filled = FilledBackground(photo.image, photo.person);
   for (int y = 0; y < 96; ++y) {
     for (int x = 0; x < 96; ++x) {
       const double r = std::hypot(x - 47.5, y - 47.5);
       if (r > 34) {
-        ASSERT_EQ(filled.pixel(x, y)[1], photo.picture.pixel(x, y)[1]);
+        ASSERT_EQ(filled.pixel(x, y)[1], photo.image.pixel(x, y)[1]);
       }
       if (r < 27) {
         ASSERT_LT(filled.pixel(x, y)[1], 60) << x << ", " << y;
       }
     }
   }
-  EXPECT_THROW(FilledBackground(photo.picture, {}), std::invalid_argument);
+  EXPECT_THROW(FilledBackground(photo.image, {}), std::invalid_argument);
 }
 
 }  // namespace

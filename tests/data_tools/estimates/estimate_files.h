@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Results of WHAM, VIBE, PHALP and GVHMR in their own bytes, from people given as numbers.
+/// Writes results of WHAM, VIBE, PHALP and GVHMR in their own formats, from people given as numbers.
 #pragma once
 
 #include <string>
@@ -35,7 +35,7 @@ inline std::vector<float> BetasOfFrames(const PersonEstimate& person) {
   return Floats(RowMatrixXd(person.betas.transpose().replicate(Count(person), 1)));
 }
 
-/// defaultdict(dict): person id → arrays; `verts` as an array that readers pass over.
+/// defaultdict(dict): person id → arrays; `verts` is an array that readers ignore.
 inline std::string WhamFile(const std::vector<PersonEstimate>& people) {
   JoblibStream stream;
   stream.Add(Global("collections", "defaultdict") + Global("builtins", "dict") + "\x85R(");
@@ -52,7 +52,7 @@ inline std::string WhamFile(const std::vector<PersonEstimate>& people) {
   return stream.Add("u").Finish();
 }
 
-/// People whose cameras are weak perspectives.
+/// People with weak-perspective cameras.
 inline std::string VibeFile(const std::vector<PersonEstimate>& people) {
   JoblibStream stream(/*aligned=*/false);
   stream.Add("}(");
@@ -73,8 +73,8 @@ inline std::string VibeFile(const std::vector<PersonEstimate>& people) {
   return stream.Add("u").Finish();
 }
 
-/// People in frames of the video with a pinhole camera; everybody's entries besides those that are read: a ghost of
-/// person 99 in every frame. Compressed, as PHALP writes it.
+/// People in frames of the video with a pinhole camera, with all of PHALP's entries: a ghost of person 99 in every
+/// frame. Compressed, as PHALP writes it.
 inline std::string PhalpFile(const std::vector<PersonEstimate>& people, int num_frames) {
   JoblibStream stream;
   stream.Add("}(");
@@ -141,7 +141,7 @@ inline std::string GvhmrFile(const PersonEstimate& person) {
   return torch_stream::Archive(object, storages);
 }
 
-/// A person of those frames, poses that differ in every joint, about `depth_m` from the camera.
+/// A person in these frames, with different poses of every joint, about `depth_m` from the camera.
 inline PersonEstimate MakePerson(const std::string& name, const std::vector<int>& frames, const Camera& camera,
                                  const Eigen::Vector3d& place) {
   PersonEstimate person;

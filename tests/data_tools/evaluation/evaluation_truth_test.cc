@@ -104,7 +104,7 @@ TEST(EvaluationTruthTest, KneesAreMeasuredInDegrees) {
   EXPECT_TRUE(std::isnan(EvaluateAlone(track).Value("knee_flexion_deg")));
 }
 
-TEST(EvaluationTruthTest, AShiftedRootMovesThePictureAndNothingElse) {
+TEST(EvaluationTruthTest, AShiftedRootMovesTheImageAndNothingElse) {
   const Track truth = TrueTrack();
   Track track = truth;
   track.motion.trans.rowwise() += Eigen::RowVector3d(0.03, 0.04, 0);

@@ -68,9 +68,9 @@ TEST(ImageMetrics, MaskOverlap) {
   EXPECT_EQ(MaskIoU(a, a), 1);
   EXPECT_EQ(MaskIoU(a, none), 0);
   EXPECT_TRUE(std::isnan(MaskIoU(none, none)));
-  Image picture(2, 1, {127, 127, 127});
-  picture.pixel(1, 0)[2] = 128;
-  EXPECT_THAT(MaskFrom(picture).inside, ElementsAre(0, 1));
+  Image image(2, 1, {127, 127, 127});
+  image.pixel(1, 0)[2] = 128;
+  EXPECT_THAT(MaskFrom(image).inside, ElementsAre(0, 1));
 }
 
 TEST(ImageMetrics, LabelOverlap) {
@@ -86,7 +86,7 @@ TEST(ImageMetrics, LabelOverlap) {
 }
 
 TEST(ImageMetrics, NormalAngles) {
-  const auto picture = [](const std::vector<Colour>& colours) {
+  const auto of = [](const std::vector<Colour>& colours) {
     Image image(static_cast<int>(colours.size()), 1);
     for (size_t i = 0; i < colours.size(); ++i) {
       uint8_t* bgr = image.pixel(static_cast<int>(i), 0);
@@ -99,18 +99,18 @@ TEST(ImageMetrics, NormalAngles) {
   const double small = 1.0 / 255, length = std::sqrt(1 + 2 * small * small);
   const auto angle = [&](double dot) { return std::acos(dot / (length * length)) * 180 / M_PI; };
   const double x_to_y = angle(2 * small + small * small), x_to_back = angle(small - small + small * small);
-  const NormalError error = CompareNormals(picture({x, x, x, black, grey}), picture({x, y, back, x, x}));
+  const NormalError error = CompareNormals(of({x, x, x, black, grey}), of({x, y, back, x, x}));
   EXPECT_NEAR(error.mean_deg, (0 + x_to_y + x_to_back) / 3, 1e-9);
   EXPECT_NEAR(error.median_deg, std::min(x_to_y, x_to_back), 1e-9);
   EXPECT_EQ(error.coverage, 1);
-  const NormalError half = CompareNormals(picture({x, x, x, x}), picture({x, y, black, grey}));
+  const NormalError half = CompareNormals(of({x, x, x, x}), of({x, y, black, grey}));
   EXPECT_NEAR(half.median_deg, x_to_y / 2, 1e-9);
   EXPECT_EQ(half.coverage, 0.5);
   const PixelMask first = MaskOf(4, 1, {1, 0, 0, 0});
-  EXPECT_EQ(CompareNormals(picture({x, x, x, x}), picture({x, y, black, grey}), &first).mean_deg, 0);
-  const NormalError none = CompareNormals(picture({black, grey}), picture({x, x}));
+  EXPECT_EQ(CompareNormals(of({x, x, x, x}), of({x, y, black, grey}), &first).mean_deg, 0);
+  const NormalError none = CompareNormals(of({black, grey}), of({x, x}));
   EXPECT_TRUE(std::isnan(none.mean_deg) && std::isnan(none.median_deg) && std::isnan(none.coverage));
-  const NormalError missed = CompareNormals(picture({x}), picture({black}));
+  const NormalError missed = CompareNormals(of({x}), of({black}));
   EXPECT_TRUE(std::isnan(missed.mean_deg));
   EXPECT_EQ(missed.coverage, 0);
 }

@@ -45,15 +45,15 @@ TEST(MotionSimilarity, IsToTheFramesThatCount) {
   for (int t = 0; t < 3; ++t) counts[t] = 1;
   const std::vector<float> to_all = SimilarityToNearest(BuiltinBody(), track, track, 2, 1);
   const std::vector<float> to_first = SimilarityToNearest(BuiltinBody(), track, track, 2, 1, {}, counts);
-  float least = 1;
+  float minimum = 1;
   for (int t = 0; t < track.num_frames(); ++t) {
     EXPECT_NEAR(to_all[t], 1, 1e-3);
     if (t < 3) {
       EXPECT_NEAR(to_first[t], 1, 1e-3);
     }
-    least = std::min(least, to_first[t]);
+    minimum = std::min(minimum, to_first[t]);
   }
-  EXPECT_LT(least, 0.9) << "the three frames of its beginning are not the whole motion";
+  EXPECT_LT(minimum, 0.9) << "the three frames of its beginning are not the whole motion";
   counts.assign(track.num_frames(), 0);
   EXPECT_TRUE(std::isnan(SimilarityToNearest(BuiltinBody(), track, track, 2, 1, {}, counts)[3]));
   counts.pop_back();

@@ -39,14 +39,14 @@ PlanarImage Scaled(const Image& image, double factor) {
   return planar;
 }
 
-PlanarImage RandomPicture(int width, int height, int channels, int seed) {
+PlanarImage RandomPlanes(int width, int height, int channels, int seed) {
   std::mt19937 random(seed);
-  PlanarImage picture{width, height, channels, {}};
-  for (int i = 0; i < width * height * channels; ++i) picture.values.push_back(random() / 4294967296.0);
-  return picture;
+  PlanarImage image{width, height, channels, {}};
+  for (int i = 0; i < width * height * channels; ++i) image.values.push_back(random() / 4294967296.0);
+  return image;
 }
 
-/// What the header says, window by window: two passes, two-dimensional weights, pixels outside are zero.
+/// The header's definition, window by window: two passes, two-dimensional weights, pixels outside are zero.
 struct SlowSsim {
   std::vector<double> weights;  ///< side × side
   int side = 0;
@@ -117,19 +117,19 @@ TEST(Ssim, NamesAndBack) {
 
 TEST(Ssim, FastEqualsWindowByWindow) {
   // Wider than a strip of the Gaussian filter, so that strips meet; two channels.
-  const PlanarImage a = RandomPicture(270, 23, 2, 1), b = RandomPicture(270, 23, 2, 2);
+  const PlanarImage a = RandomPlanes(270, 23, 2, 1), b = RandomPlanes(270, 23, 2, 2);
   const auto fast = [&](SsimPreset preset) { return Ssim(a, b, preset, 1); };
   EXPECT_NEAR(fast(SsimPreset::kWang2004), SlowSsim::Gaussian(1)(a, b), kRounding);
   EXPECT_NEAR(fast(SsimPreset::kPiq), SlowSsim::Gaussian(1)(a, b), kRounding);
   EXPECT_NEAR(fast(SsimPreset::k3dgs), SlowSsim::Gaussian(1, true)(a, b), kRounding);
   EXPECT_NEAR(fast(SsimPreset::kSkimage7), SlowSsim::Uniform(7, 1)(a, b), kRounding);
   EXPECT_NEAR(fast(SsimPreset::kNeuralBody), SlowSsim::Uniform(7, 2)(a, b), kRounding);
-  const PlanarImage large_a = RandomPicture(60, 56, 1, 3), large_b = RandomPicture(60, 56, 1, 4);
+  const PlanarImage large_a = RandomPlanes(60, 56, 1, 3), large_b = RandomPlanes(60, 56, 1, 4);
   EXPECT_NEAR(Ssim(large_a, large_b, SsimPreset::kGfla51, 1), SlowSsim::Uniform(51, 1)(large_a, large_b), kRounding);
 }
 
 TEST(Ssim, EveryInstructionSetAgrees) {
-  const PlanarImage a = RandomPicture(270, 23, 2, 1), b = RandomPicture(270, 23, 2, 2);
+  const PlanarImage a = RandomPlanes(270, 23, 2, 1), b = RandomPlanes(270, 23, 2, 2);
   const double expected = SlowSsim::Gaussian(1)(a, b);
   const std::vector<int64_t> targets = ssim_internal::SimdTargets();
   ASSERT_FALSE(targets.empty());
@@ -245,7 +245,7 @@ TEST(Ssim, RefusesWhatItCannotCompare) {
   EXPECT_THROW(Ssim(Image(), Image(), SsimPreset::k3dgs), std::invalid_argument);
   EXPECT_NO_THROW(Ssim(small, small, SsimPreset::kSkimage7));
   EXPECT_NO_THROW(Ssim(Image(1, 1), Image(1, 1), SsimPreset::k3dgs));
-  PlanarImage a = RandomPicture(60, 60, 1, 5), b = a;
+  PlanarImage a = RandomPlanes(60, 60, 1, 5), b = a;
   b.values[1234] = std::nan("");
   for (const std::string& name : SsimPresetNames()) {
     EXPECT_TRUE(std::isnan(Ssim(a, b, SsimPresetFrom(name).value(), 1))) << name;

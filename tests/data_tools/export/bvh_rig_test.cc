@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// BVH under the names of every rig, read back by a reader of the test's own.
+/// BVH with the names of every rig, read back by an independent reader.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Poses in the world, markers and cameras, each read back by a reader of the test's own.
+/// Poses in the world, markers and cameras, each read back by an independent reader.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -75,7 +75,7 @@ TEST(ExportScene, RefusesNobody) {
   EXPECT_THROW(MakeExportScene({}, {}, WorldFrame()), std::invalid_argument);
 }
 
-/// Where markers are, read off the body's landmarks.
+/// Compares marker positions with the body's landmarks.
 void ExpectMarkers(const MarkerTrajectories& markers, const ExportScene& scene) {
   ASSERT_EQ(markers.positions.size(), 12U);
   EXPECT_TRUE(markers.positions[3].array().isNaN().all());
@@ -220,7 +220,7 @@ TEST(ColmapWriter, SeesTheBodyWhereTheClipDid) {
   EXPECT_THROW(ColmapCamerasText(lens), std::invalid_argument);
 }
 
-/// Where a camera that moves saw vertex v of frame t, in OpenCV's pixels.
+/// Pixel of vertex v of frame t in a moving camera, in OpenCV's pixel coordinates.
 Eigen::Vector2d SeenPixel(const Track& track, int t, int v) {
   const BodyPose pose =
       PoseFromAxisAngle(BuiltinBody(), track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A short clip in a world whose camera is tilted, for tests of what is written of it.
+/// A short clip in a world with a tilted camera, for tests of exported files.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ inline ExportScene SceneOf(const Track& track) {
   return MakeExportScene(bodies, tracks, TiltedWorld());
 }
 
-/// Vertices of frame t of the track in the world, by way of the camera frame.
+/// Vertices of frame t of the track in the world, computed via the camera frame.
 inline MatrixX3d VerticesInWorld(const Track& track, int t) {
   const BodyPose pose =
       PoseFromAxisAngle(BuiltinBody(), track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());

@@ -133,7 +133,7 @@ TEST(GlbWriter, TwoPeopleShareOneAnimation) {
   EXPECT_EQ(file.Keys(pelvis, "scale", true)(0, 0), 0);
 }
 
-TEST(GlbWriter, RefusesWhatIsNoPicture) {
+TEST(GlbWriter, RefusesWhatIsNoImage) {
   const Track track = TrackWithAGap();
   GlbSummary summary;
   EXPECT_THROW(GlbText(SceneOf(track), {.textures = {"JFIF"}}, &summary), std::invalid_argument);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A slow glTF reader that shares nothing with the writer: it takes the file apart as the specification says and poses
-/// its skins.
+/// A simple glTF reader that shares no code with the writer: it parses the file by the specification and poses its
+/// skins.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The project's contract for files that cannot be used: std::runtime_error, one line, naming the file.
+/// Checks the contract for unusable files: std::runtime_error with one line that names the file.
 #pragma once
 
 #include <gtest/gtest.h>

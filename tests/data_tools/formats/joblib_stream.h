@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Files as joblib.dump writes them, byte by byte, for tests without Python.
+/// Builds joblib.dump files byte by byte, for tests without Python.
 #pragma once
 
 #include <zlib.h>
@@ -15,17 +15,17 @@ namespace bodyloom::joblib_stream {
 
 using namespace pickle_writer;  // NOLINT(google-build-using-namespace): opcodes read like the stream they build
 
-/// A pickle in the making. Array bytes are padded by where they lie in the file, so values are appended in order.
+/// Builder of a pickle. Array bytes are padded by their position in the file, so values are appended in order.
 class JoblibStream {
  public:
-  /// `aligned`: as joblib writes from 1.2 on.
+  /// `aligned`: with padding, as in joblib 1.2 and later.
   explicit JoblibStream(bool aligned = true) : aligned_(aligned), bytes_("\x80\x04", 2) {}
 
   JoblibStream& Add(const std::string& opcodes) {
     bytes_ += opcodes;
     return *this;
   }
-  /// The wrapper object, its state, and behind it the raw elements.
+  /// Appends the wrapper object, its state, and then the raw elements.
   JoblibStream& AddArray(const std::string& dtype, char order, const std::vector<int>& shape, const std::string& raw,
                          bool fortran_order = false) {
     Items state = {{Unicode("subclass"), Global("numpy", "ndarray")},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Pickles of joblib.dump, in which arrays lie between the opcodes.
+/// Pickles of joblib.dump, which hold arrays between opcodes.
 #include <gmock/gmock.h>
 
 #include "data_tools/formats/pickle.h"

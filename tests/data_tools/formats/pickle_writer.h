@@ -36,7 +36,7 @@ inline std::string Tuple(const std::vector<std::string>& items) {
   for (const std::string& item : items) text += item;
   return text + "t";
 }
-/// Keys and values are opcodes already.
+/// Dictionary; keys and values are already opcodes.
 inline std::string Dict(const Items& items) {
   std::string text = "}(";
   for (const auto& [key, value] : items) text += key + value;

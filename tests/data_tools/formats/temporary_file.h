@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A path in a fresh temporary folder that goes away with the object.
+/// A path in a new temporary folder that is removed with the object.
 #pragma once
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Streams as torch.save writes them, byte by byte, for tests without PyTorch.
+/// Builds torch.save streams byte by byte, for tests without PyTorch.
 #pragma once
 
 #include <cstdint>
@@ -69,8 +69,8 @@ inline std::string Archive(const std::string& object, const std::vector<RawStora
   return MakeZip(members);
 }
 
-/// A small model of everything that is read: a matrix, its transpose and a window of it in one storage, a parameter, an
-/// expanded scalar, every element type, a nested dictionary, and entries that are no tensors.
+/// A small model with every supported case: a matrix, its transpose and a window of it in one storage, a parameter, an
+/// expanded scalar, every element type, a nested dictionary, and entries that are not tensors.
 struct SmallModel {
   std::string object;
   std::vector<RawStorage> storages;

@@ -105,7 +105,7 @@ TEST(TorchWeights, NothingRuns) {
     }
   }
   EXPECT_THAT(ErrorOf(Archive(Global("torch", "FloatStorage") + ")R", {})), HasSubstr("builds no data"));
-  // What torch.save may name stays unknown to every other pickle.
+  // Globals allowed in torch.save files remain unknown in other pickles.
   FileErrorOf("p.pkl", [] { ReadPickle(Pickle(2, Global("torch", "FloatStorage")), "p.pkl"); });
   FileErrorOf("p.pkl", [] { ReadPickle(Pickle(2, ")Q"), "p.pkl"); });
 }

@@ -22,13 +22,13 @@
 #include "tests/data_tools/estimates/estimate_files.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/fuzz/fuzz_targets.h"
-#include "tests/support/random_picture_unet.h"
+#include "tests/support/random_image_unet.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::fuzz {
 namespace {
 
-/// What a writer writes.
+/// Bytes that a writer writes to a file.
 template <typename Write>
 std::string BytesOf(const std::string& name, const Write& write) {
   const TemporaryFolder folder;

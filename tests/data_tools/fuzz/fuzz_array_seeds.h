@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Small valid files where the fuzzers of fuzz_array_targets.h and fuzz_file_targets.h start.
+/// Small valid files as seeds of the fuzzers of fuzz_array_targets.h and fuzz_file_targets.h.
 #pragma once
 
 #include <map>
@@ -8,8 +8,8 @@
 
 namespace bodyloom::fuzz {
 
-/// Needs those of "detections", "bvh", "deepmimic" and "track" (fuzz_text_seeds.h, fuzz_seeds.cc): the front doors
-/// start from them.
+/// Requires the seeds of "detections", "bvh", "deepmimic" and "track" (fuzz_text_seeds.h, fuzz_seeds.cc), which are
+/// also seeds of the readers that detect the format.
 void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds);
 
 }  // namespace bodyloom::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What libFuzzer found, as small as it became.
+/// Minimised inputs of faults found by libFuzzer.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@ namespace bodyloom::fuzz {
 
 namespace {
 
-/// What a training run writes of itself beside its configuration: for people to read, so almost anything goes.
+/// Free-form notes of a training run beside its configuration; readers must accept almost any content.
 constexpr const char* kNotes =
     R"({"data":"people/dancer, first take","track":"","validate_data":"people/dancer, second take","train":[[0,119]],)"
     R"("validate":[[120,149]],"share":1.0,"seed":1,"steps":4000,"batch":4,"learning_rate":0.001,"weights":)"

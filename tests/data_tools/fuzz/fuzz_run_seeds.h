@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Seeds for what jobs read beside weights, pictures and observations, small and valid: where the fuzzers of
-/// fuzz_run_targets.h start.
+/// Small valid files as seeds of the fuzzers of fuzz_run_targets.h: inputs of jobs other than weights, images and
+/// observations.
 #pragma once
 
 #include <map>

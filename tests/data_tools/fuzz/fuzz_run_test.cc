@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What jobs read beside weights, pictures and observations, without LibTorch: a run's config.json, the light, a
+/// Inputs of jobs other than weights, images and observations, without LibTorch: a run's config.json, the light, a
 /// batch's manifest and records.
 #include "tests/fuzz/fuzz_run_targets.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Small valid files of every kind the fuzzers read, made on the spot.
+/// Small valid files of every kind that the fuzzers read, generated at run time.
 #pragma once
 
 #include <map>

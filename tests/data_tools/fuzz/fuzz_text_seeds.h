@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Small valid text files of every format, where the fuzzers of fuzz_text_targets.h start.
+/// Small valid text files of every format as seeds of the fuzzers of fuzz_text_targets.h.
 #pragma once
 
 #include <map>

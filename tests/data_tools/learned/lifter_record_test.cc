@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The weights that ship are the ones that the recorded run made (their checksums: tests/CMakeLists.txt): they carry the
-// run's configuration, and they make the errors that the run's last validation wrote down.
+// The built-in weights are those of the recorded run (checksums: tests/CMakeLists.txt): they hold the run's
+// configuration and reproduce the errors of its last validation.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -12,7 +12,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
 #include "tests/data_tools/formats/temporary_file.h"
-#include "tests/support/random_picture_unet.h"
+#include "tests/support/random_image_unet.h"
 
 namespace bodyloom::parser_weights_io_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// AMASS and AIST++ motions in, AMASS and BVH out, and the operations between.
+/// Reading of AMASS and AIST++ motions, writing of AMASS and BVH, and operations on motions.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>

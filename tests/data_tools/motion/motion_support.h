@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Made-up motions of SMPL's 24 joints for tests of what is done with recordings.
+/// Synthetic motions of SMPL's 24 joints for tests of the processing of recordings.
 #pragma once
 
 #include <cmath>
@@ -23,8 +23,8 @@ inline Motion StandingMotion(double fps, double seconds) {
   return motion;
 }
 
-/// A walk of one step a second along z: legs swing from the hips, the swinging knee bends, and the pelvis goes where
-/// the bearing foot, the left one first, stands still.
+/// A walk of one step per second along z: legs swing from the hips, the knee of the swing leg bends, and the stance
+/// foot, the left one first, stays in place.
 inline Motion WalkingMotion(double fps, double seconds) {
   Motion motion = StandingMotion(fps, seconds);
   Eigen::RowVector3d bearing = Eigen::RowVector3d::Zero();

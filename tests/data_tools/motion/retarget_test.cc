@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A known SMPL motion is seen through a foreign skeleton (other axes, units, names, rest pose and twist), written as
-/// BVH, read back and retargeted: it must come back as it was.
+/// Transfers a known SMPL motion to a different skeleton (axes, units, names, rest pose and twist), writes it as BVH,
+/// reads it back and retargets it, which must reproduce the original.
 #include "data_tools/motion/retarget.h"
 
 #include <gmock/gmock.h>

@@ -62,7 +62,7 @@ TEST_F(CameraPathFile, FramesQuaternionsAndIntrinsics) {
   EXPECT_THAT(CameraPathOnClock(read, kClip, {.fps = 5}, "x").timestamps, ElementsAre(0, 0.6));
 }
 
-TEST_F(CameraPathFile, ColmapsPicturesAreFramesByTheirNumbers) {
+TEST_F(CameraPathFile, ColmapsImagesAreFramesByTheirNumbers) {
   const RecordedCameraPath read =
       Colmap(ImageLines("v2/f_0010.png", 10) + ImageLines("v2/f_0002.png", 2) + ImageLines("v2/f_0001.png", 1),
              "1 SIMPLE_PINHOLE 640 480 500 320 240\n");
@@ -79,7 +79,7 @@ TEST_F(CameraPathFile, ColmapsPicturesAreFramesByTheirNumbers) {
   EXPECT_THAT(Colmap(ImageLines("f0.png", 0) + ImageLines("f1.png", 1)).frames, ElementsAre(0, 1));
 }
 
-TEST_F(CameraPathFile, PicturesWithoutNumbersAreCountedByName) {
+TEST_F(CameraPathFile, ImagesWithoutNumbersAreCountedByName) {
   const RecordedCameraPath read = Colmap(ImageLines("b.png", 2) + ImageLines("a.png", 1));
   EXPECT_TRUE(read.by_sorted_name);
   EXPECT_EQ(read.poses[0].camera_from_world_translation.x(), 1);

@@ -77,7 +77,7 @@ TEST(PartLabels, AMaskComesBackAsOne) {
   EXPECT_THROW(WriteMask(folder.File("other.npz"), mask), std::invalid_argument);
 }
 
-TEST(PartLabels, AMaskAsPicturesIsRead) {
+TEST(PartLabels, AMaskAsImagesIsRead) {
   NpzArrays archive = Archive(SmallPerson(), {1, 30, 40});
   archive["label_kind"] = NdArray::FromString("person");
   const PartLabelSequence read = PartLabelsFromNpz(archive, "l.npz");

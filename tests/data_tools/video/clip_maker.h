@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Clips made by the ffmpeg program: what phones and cameras write and this project's writer does not.
+/// Makes clips with the ffmpeg program, in forms that phones and cameras write and this project's writer does not.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@
 
 namespace bodyloom {
 
-/// A picture that says which frame it is: a bright bar at column 4·index on a soft ramp.
-inline Image NumberedPicture(int index, int width = 96, int height = 64) {
+/// An image that encodes its frame index: a bright bar at column 4·index on a soft ramp.
+inline Image NumberedImage(int index, int width = 96, int height = 64) {
   Image image(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -32,13 +32,13 @@ inline Image NumberedPicture(int index, int width = 96, int height = 64) {
   return image;
 }
 
-/// The index of a numbered picture, -1 where there is no bar.
+/// The index of a numbered image, -1 without a bar.
 inline int NumberOf(const Image& image) {
   int best = -1, brightest = 180;
   for (int k = 0; k < image.width / 4; ++k) {
     const Colour c = image.at(4 * k + 2, image.height / 2);
-    const int least = std::min({c.red, c.green, c.blue});
-    if (least > brightest) brightest = least, best = k;
+    const int minimum = std::min({c.red, c.green, c.blue});
+    if (minimum > brightest) brightest = minimum, best = k;
   }
   return best;
 }
@@ -49,11 +49,11 @@ inline void Ffmpeg(const std::string& arguments) {
   ASSERT_EQ(std::system(command.c_str()), 0) << command;
 }
 
-/// Writes numbered pictures 0 to frames - 1 into the folder; returns what makes ffmpeg read them.
+/// Writes numbered images 0 to frames - 1 into the folder; returns ffmpeg's arguments to read them.
 inline std::string NumberedInput(const TemporaryFolder& folder, int frames, const std::string& rate = "30",
                                  int width = 96, int height = 64) {
   for (int i = 0; i < frames; ++i) {
-    WriteImage(folder.File("n" + std::to_string(1000 + i) + ".png"), NumberedPicture(i, width, height));
+    WriteImage(folder.File("n" + std::to_string(1000 + i) + ".png"), NumberedImage(i, width, height));
   }
   return "-framerate " + rate + " -start_number 1000 -i " + folder.File("n%d.png") + " ";
 }
@@ -79,7 +79,7 @@ inline void WriteTurned(const std::string& bytes, const std::array<int, 4>& turn
   WriteFileAtomically(path, copy);
 }
 
-/// The numbers of all frames, in the order in which they are read, and when they are shown.
+/// Indices of all frames in reading order, and their times.
 struct ReadClip {
   std::vector<int> numbers;
   std::vector<double> times;

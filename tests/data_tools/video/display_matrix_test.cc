@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns and mirror images against the matrix's own formula, against ffmpeg's, and as a phone's clip.
+// Rotations and mirrorings against the matrix's formula, against ffmpeg's, and in a phone's clip.
 #include "data_tools/video/frame_image.h"
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ TEST(DisplayMatrix, AllTurnsAndMirrorImages) {
     ASSERT_TRUE(reader.Read(&frame));
     EXPECT_EQ(frame.width, reader.info().width);
     const std::string what = ::testing::PrintToString(turn);
-    EXPECT_EQ(frame, Moved(NumberedPicture(6), turn)) << what;
+    EXPECT_EQ(frame, Moved(NumberedImage(6), turn)) << what;
     Ffmpeg("-i " + turned + " -vf select='eq(n\\,6)' -frames:v 1 " + shown);
     EXPECT_EQ(frame, ReadImage(shown)) << what;
   }
@@ -93,7 +93,7 @@ TEST(DisplayMatrix, NotedRotations) {
         EXPECT_LT(MeanDifference(frame, ReadImage(shown)), 2.5) << degrees;
       }
       for (int turn = 1; turn < 4; ++turn) {
-        if (MeanDifference(frame, Moved(NumberedPicture(i), kTurns[turn])) < 2.5) found.insert(12 * turn + i);
+        if (MeanDifference(frame, Moved(NumberedImage(i), kTurns[turn])) < 2.5) found.insert(12 * turn + i);
       }
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Photographs whose camera has noted its lens.
+/// Makes photos with Exif data of the lens.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -46,8 +46,8 @@ TEST(FrameClock, GoesOnWhereARecordingBeginsAnew) {
 }
 
 TEST(FrameClock, TimestampsAtTheEdgeOfTheirRange) {
-  constexpr int64_t kLeast = std::numeric_limits<int64_t>::min() + 1, kMost = std::numeric_limits<int64_t>::max();
-  const std::vector<double> times = TimesOf({kLeast, kMost, 0, kMost, kLeast, kMost});
+  constexpr int64_t kMinimum = std::numeric_limits<int64_t>::min() + 1, kMaximum = std::numeric_limits<int64_t>::max();
+  const std::vector<double> times = TimesOf({kMinimum, kMaximum, 0, kMaximum, kMinimum, kMaximum});
   for (size_t i = 1; i < times.size(); ++i) EXPECT_GE(times[i], times[i - 1]);
 }
 

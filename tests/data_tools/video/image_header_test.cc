@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sizes in headers against OpenCV's encoders, and against bytes put together by hand where it writes none.
+// Image sizes in headers against OpenCV's encoders, and against hand-made files of formats that OpenCV cannot write.
 #include "data_tools/video/image_header.h"
 
 #include <gtest/gtest.h>
@@ -21,9 +21,9 @@ namespace {
 using namespace std::string_literals;
 
 std::string Encoded(const std::string& extension, int width, int height, const std::vector<int>& parameters = {}) {
-  const cv::Mat picture(height, width, CV_8UC3, cv::Scalar(20, 120, 220));
+  const cv::Mat image(height, width, CV_8UC3, cv::Scalar(20, 120, 220));
   std::vector<uchar> bytes;
-  EXPECT_TRUE(cv::imencode(extension, picture, bytes, parameters));
+  EXPECT_TRUE(cv::imencode(extension, image, bytes, parameters));
   return {bytes.begin(), bytes.end()};
 }
 
@@ -71,7 +71,7 @@ TEST(ImageHeader, FormatsThatOpenCvDoesNotWrite) {
   }
 }
 
-TEST(ImageHeader, SidesThatNoPictureHasCanBeMultiplied) {
+TEST(ImageHeader, SidesThatNoImageHasCanBeMultiplied) {
   std::string bytes = Encoded(".png", 37, 23);
   bytes.replace(16, 8, 8, '\xFF');
   const auto header = ReadImageHeader(bytes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours against the standards' formulas: clips whose YCbCr values are known to the bit (FFV1 loses nothing).
+// Colours against the standards' formulas: clips with exactly known YCbCr values (lossless FFV1).
 #include <gtest/gtest.h>
 
 #include <cmath>

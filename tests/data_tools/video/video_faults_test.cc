@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are cut off, damaged or no video: frames up to the last whole one, or one line that names the file.
+// Truncated, damaged and non-video files: frames up to the last complete one, or one line that names the file.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -64,7 +64,7 @@ TEST(VideoFaults, SoundIsNoVideo) {
   const std::string sound = folder.File("sound.m4a"), wave = folder.File("sound.wav"), cover = folder.File("cover.m4a");
   Ffmpeg("-f lavfi -i sine=duration=0.2 " + sound);
   Ffmpeg("-f lavfi -i sine=duration=0.2 " + wave);
-  WriteImage(folder.File("cover.png"), NumberedPicture(1));
+  WriteImage(folder.File("cover.png"), NumberedImage(1));
   Ffmpeg("-i " + sound + " -i " + folder.File("cover.png") +
          " -map 0 -map 1 -c:a copy -c:v png -disposition:v:0 attached_pic " + cover);
   for (const std::string& path : {sound, wave, cover}) ExpectError(path, "sound without a video stream");
@@ -79,7 +79,7 @@ TEST(VideoFaults, AVideoAmongOtherStreamsIsFound) {
   EXPECT_EQ(clip.warning, "") << "sound may last longer";
 }
 
-TEST(VideoFaults, HugePicturesAreRefusedBeforeMemoryIsTaken) {
+TEST(VideoFaults, HugeImagesAreRefusedBeforeMemoryIsTaken) {
   const TemporaryFolder folder;
   const std::string clip = folder.File("clip.mp4"), huge = folder.File("huge.mp4");
   Ffmpeg(NumberedInput(folder, 3) + "-c:v libx264 -pix_fmt yuv420p " + clip);
@@ -94,14 +94,14 @@ TEST(VideoFaults, HugePicturesAreRefusedBeforeMemoryIsTaken) {
 /// Cut anywhere: the frames before the cut come out as they are in the whole clip, and the warning says that it is cut.
 void ExpectWholeFrames(const std::string& bytes, const std::string& cut, int frames, bool promises) {
   int opened = 0, warned = 0;
-  size_t most = 0;
+  size_t maximum = 0;
   for (size_t size = 1; size < bytes.size(); size += bytes.size() / 60 + 1) {
     WriteFileAtomically(cut, bytes.substr(0, size));
     try {
       const ReadClip clip = ReadAll(cut);
       ++opened;
-      EXPECT_GE(clip.times.size(), most) << "the longer the file, the more frames";
-      most = std::max(most, clip.times.size());
+      EXPECT_GE(clip.times.size(), maximum) << "the longer the file, the more frames";
+      maximum = std::max(maximum, clip.times.size());
       for (size_t i = 0; i < clip.numbers.size(); ++i) EXPECT_EQ(clip.numbers[i], static_cast<int>(i));
       EXPECT_EQ(VideoFrameTimes(cut), clip.times) << size << " bytes";
       if (static_cast<int>(clip.times.size()) == frames) continue;
@@ -113,7 +113,7 @@ void ExpectWholeFrames(const std::string& bytes, const std::string& cut, int fra
       }
     } catch (const std::runtime_error& error) {
       EXPECT_NE(std::string(error.what()).find(cut), std::string::npos) << error.what();
-      EXPECT_EQ(most, 0U) << "a longer file is refused: " << error.what();
+      EXPECT_EQ(maximum, 0U) << "a longer file is refused: " << error.what();
     }
   }
   EXPECT_GT(opened, 20);
@@ -183,7 +183,7 @@ TEST(VideoFaults, FramesThatCannotBeDecodedAreLeftOutAndCounted) {
   EXPECT_NE(clip.warning.find("2 frames cannot be decoded"), std::string::npos) << clip.warning;
 }
 
-/// What may come of a damaged file: frames of one size whose times rise, or one line.
+/// Returns true if a damaged file gives frames of one size at ascending times, or a one-line error.
 bool Holds(const std::string& path) {
   try {
     VideoReader reader(path);

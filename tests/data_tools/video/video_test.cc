@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 void WriteClip(const std::string& path, int frames, int width = 96, int height = 64, double fps = 25) {
   VideoWriter writer(path, width, height, fps);
-  for (int i = 0; i < frames; ++i) writer.Write(NumberedPicture(i, width, height));
+  for (int i = 0; i < frames; ++i) writer.Write(NumberedImage(i, width, height));
   writer.Finish();
 }
 
@@ -116,7 +116,7 @@ TEST(Video, UnfinishedFileDoesNotAppear) {
   const TemporaryFolder folder;
   {
     VideoWriter writer(folder.File("clip.mp4"), 96, 64, 25);
-    for (int i = 0; i < 5; ++i) writer.Write(NumberedPicture(i));
+    for (int i = 0; i < 5; ++i) writer.Write(NumberedImage(i));
   }
   EXPECT_EQ(NumFilesIn(folder.File("")), 0);
 }
@@ -169,7 +169,7 @@ TEST(Video, RefusesPlacesThatCannotBeWritten) {
   EXPECT_THROW(VideoWriter(folder.File("a.mp4"), 64, 64, 0), std::invalid_argument);
   EXPECT_THROW(VideoWriter(folder.File("a.mp4"), 16384, 16384, 25), std::invalid_argument) << "it could not be read";
   VideoWriter writer(folder.File("a.mp4"), 96, 64, 25);
-  EXPECT_THROW(writer.Write(NumberedPicture(0, 64, 64)), std::invalid_argument);
+  EXPECT_THROW(writer.Write(NumberedImage(0, 64, 64)), std::invalid_argument);
 }
 
 /// The JPEG with an EXIF segment that asks for a quarter turn to the right (orientation 6).
@@ -202,7 +202,7 @@ TEST(Video, AStillImageIsAFolderOfOneAndUpright) {
 TEST(Video, ReadsAFolderOfImagesInTheOrderOfTheirNumbers) {
   const TemporaryFolder folder;
   for (const int i : {0, 1, 2, 9, 10, 11})
-    WriteImage(folder.File("frame_" + std::to_string(i) + ".png"), NumberedPicture(i));
+    WriteImage(folder.File("frame_" + std::to_string(i) + ".png"), NumberedImage(i));
   WriteFileAtomically(folder.File("notes.txt"), "not an image");
   VideoReader reader(folder.File(""));
   EXPECT_EQ(reader.info().num_frames, 6);
@@ -210,14 +210,14 @@ TEST(Video, ReadsAFolderOfImagesInTheOrderOfTheirNumbers) {
   Image frame;
   for (const int i : {0, 1, 2, 9, 10, 11}) {
     ASSERT_TRUE(reader.Read(&frame));
-    EXPECT_EQ(frame, NumberedPicture(i)) << "frame " << i;  // PNG keeps every bit
+    EXPECT_EQ(frame, NumberedImage(i)) << "frame " << i;  // PNG keeps every bit
   }
   EXPECT_FALSE(reader.Read(&frame));
 }
 
 TEST(Video, AFolderHasNoClock) {
   const TemporaryFolder folder;
-  for (int i = 0; i < 5; ++i) WriteImage(folder.File(std::to_string(i) + ".png"), NumberedPicture(i));
+  for (int i = 0; i < 5; ++i) WriteImage(folder.File(std::to_string(i) + ".png"), NumberedImage(i));
   VideoReader reader(folder.File(""));
   EXPECT_EQ(reader.Skip(3), 3);
   Image frame;
@@ -235,8 +235,8 @@ TEST(Video, FoldersWithFaultsNameTheFile) {
   const TemporaryFolder folder;
   fs::create_directory(folder.File("empty"));
   FileErrorOf(folder.File("empty"), [&] { VideoReader reader(folder.File("empty")); });
-  WriteImage(folder.File("a1.png"), NumberedPicture(1));
-  WriteImage(folder.File("a2.png"), NumberedPicture(2, 64, 64));
+  WriteImage(folder.File("a1.png"), NumberedImage(1));
+  WriteImage(folder.File("a2.png"), NumberedImage(2, 64, 64));
   VideoReader reader(folder.File(""));
   Image frame;
   ASSERT_TRUE(reader.Read(&frame));
@@ -245,18 +245,18 @@ TEST(Video, FoldersWithFaultsNameTheFile) {
 
 TEST(ImageFile, KeepsEveryPixelAsPng) {
   const TemporaryFolder folder;
-  WriteImage(folder.File("a.png"), NumberedPicture(3));
-  EXPECT_EQ(ReadImage(folder.File("a.png")), NumberedPicture(3));
-  WriteImage(folder.File("a.jpg"), NumberedPicture(3));
+  WriteImage(folder.File("a.png"), NumberedImage(3));
+  EXPECT_EQ(ReadImage(folder.File("a.png")), NumberedImage(3));
+  WriteImage(folder.File("a.jpg"), NumberedImage(3));
   EXPECT_EQ(NumberOf(ReadImage(folder.File("a.jpg"))), 3);
   EXPECT_THROW(WriteImage(folder.File("a.png"), Image()), std::invalid_argument);
-  FileErrorOf("a.gif", [&] { WriteImage(folder.File("a.gif"), NumberedPicture(3)); });
+  FileErrorOf("a.gif", [&] { WriteImage(folder.File("a.gif"), NumberedImage(3)); });
 }
 
 TEST(ImageFile, TruncatedImagesAreRefusedOrShowWhatIsThere) {
   const TemporaryFolder folder;
   const std::string path = folder.File("a.png"), cut = folder.File("cut.png");
-  WriteImage(path, NumberedPicture(3));
+  WriteImage(path, NumberedImage(3));
   const std::string bytes = ReadFileBytes(path);
   int refused = 0;
   for (size_t size = 0; size < bytes.size(); size += 7) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When frames are shown, read with them and from packets alone; and going to a frame by its number or its time.
+// Timestamps of frames, read with them and from packets alone, and seeking by frame number and by time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ void ExpectClip(const std::string& path, const std::vector<int>& numbers, const 
   EXPECT_EQ(VideoFrameTimes(path), clip.times) << path;
 }
 
-/// When a phone that means 59.94 frames a second shows frame i: late by up to three quarters of a frame.
+/// Time of frame i in a phone's nominal 59.94 frames per second: late by up to three quarters of a frame.
 double PhoneTime(int i) { return (1001.0 * i + 250 * (7 * i % 4)) / 60000; }
 
 std::string PhoneClip(const TemporaryFolder& folder) {

@@ -11,9 +11,9 @@ namespace {
 TEST(PipelineCallbacks, WithoutAnyAJobRunsThrough) {
   const PipelineCallbacks none;
   EXPECT_NO_THROW(none.Begin("work"));
-  EXPECT_TRUE(none.GoesOn("stage", 0.5));
+  EXPECT_TRUE(none.ReportProgress("stage", 0.5));
   EXPECT_NO_THROW(none.Update("stage", 0.5));
-  EXPECT_NO_THROW(none.Say("line"));
+  EXPECT_NO_THROW(none.Message("line"));
 }
 
 TEST(PipelineCallbacks, FalseCancels) {
@@ -25,7 +25,7 @@ TEST(PipelineCallbacks, FalseCancels) {
     return fraction < 0.5;
   };
   EXPECT_NO_THROW(callbacks.Update("fit", 0.25));
-  EXPECT_FALSE(callbacks.GoesOn("fit", 0.5));
+  EXPECT_FALSE(callbacks.ReportProgress("fit", 0.5));
   EXPECT_THROW(callbacks.Update("fit", 0.75), Cancelled);
   EXPECT_EQ(last, 0.75);
 }
@@ -36,7 +36,7 @@ TEST(PipelineCallbacks, WorkAndLinesArrive) {
   callbacks.begin = [&](const std::string& work) { heard += "begin " + work + "; "; };
   callbacks.message = [&](const std::string& line) { heard += line; };
   callbacks.Begin("tracking 3 frames");
-  callbacks.Say("one file left out");
+  callbacks.Message("one file left out");
   EXPECT_EQ(heard, "begin tracking 3 frames; one file left out");
 }
 

@@ -21,7 +21,7 @@ class BodyWithGarmentTest : public ::testing::Test {
   static LooseGarment Cut(const BodyModel& body) {
     LooseGarmentOptions options;
     options.waist_y_m = body.joint_template()(3, 1), options.length_m = 0.5, options.fullness = 0.4;
-    return ClothWearer(body, Eigen::VectorXd(), {}).Cut(options, 1);
+    return ClothCollisionBody(body, Eigen::VectorXd(), {}).Cut(options, 1);
   }
   const BodyModel& body_ = ToyBody();
   const LooseGarment garment_ = Cut(body_);

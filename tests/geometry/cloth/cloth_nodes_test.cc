@@ -24,7 +24,7 @@ LooseGarment Skirt() {
   return CutLooseGarment(body.data().v_template, body.data().faces, 0.3, options);
 }
 
-/// Where a point of the sewn garment's space goes with the nodes near it.
+/// Position of a point of the sewn garment's space, moved with its nearest nodes.
 Vector3d Carried(const ClothNodes& nodes, const MovedNodes& moved, const Vector3d& point) {
   const NearestNodes near = nodes.Near(point);
   Vector3d sum = Vector3d::Zero();

@@ -54,7 +54,7 @@ std::vector<double> Angles() {
   std::vector<double> angles = {0, kPi - 1e-3, kPi - 1e-6, kPi - 1e-9, kPi - 1e-12};
   for (double a = 1e-12; a < kPi; a *= 3) angles.push_back(a);
   for (double a = 0.05; a < kPi; a += 0.1) angles.push_back(a);
-  // Where series and closed forms join: |w|² = 1e-8 and 1e-2, both sides.
+  // Transitions between series and closed forms: |w|² = 1e-8 and 1e-2, both sides.
   for (double join : {1e-4, 1e-1}) {
     for (double side : {1 - 1e-3, 1 - 1e-12, 1.0, 1 + 1e-12, 1 + 1e-3}) angles.push_back(join * side);
   }

@@ -28,11 +28,11 @@ TEST(LabelImage, LiesOverAnImageOfAnySize) {
 
 TEST(PackedLabels, GivesBackWhatItWasGiven) {
   std::mt19937 random(3);
-  for (const int most : {1, 2, 40}) {  // long runs, short ones, hardly any two pixels alike
+  for (const int maximum : {1, 2, 40}) {  // long runs, short ones, hardly any two pixels alike
     LabelImage image{-3, 7, 31, 17, {}};
     uint8_t label = 0;
     for (int i = 0; i < 31 * 17; ++i) {
-      if (random() % 40 < unsigned(most)) label = uint8_t(random() % (most == 1 ? 2 : 256));
+      if (random() % 40 < unsigned(maximum)) label = uint8_t(random() % (maximum == 1 ? 2 : 256));
       image.labels.push_back(label);
     }
     const PackedLabels packed = image;

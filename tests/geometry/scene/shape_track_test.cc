@@ -76,32 +76,32 @@ std::pair<double, double> RowsOf(const Track& track, int t) {
   return rows;
 }
 
-TEST(ShapeTrack, PlacedInThePictureThePersonIsAsTallInIt) {
+TEST(ShapeTrack, PlacedInTheImageThePersonIsAsTallInIt) {
   Track track = ShortTrack();
   track.motion.poses.rightCols(track.motion.poses.cols() - 3).setZero();  // upright, so that stature is all of it
   track.world = WorldOverGround({0, -1, 0}, 1.4);
   const Track in_scene = WithShape(BuiltinBody(), track, Tall());
-  const Track in_picture = WithShape(BuiltinBody(), track, Tall(), PersonPlacing::kInPicture);
+  const Track in_image = WithShape(BuiltinBody(), track, Tall(), PersonPlacing::kInImage);
   const auto [top, bottom] = RowsOf(track, 0);
   const auto [own_top, own_bottom] = RowsOf(in_scene, 0);
-  const auto [same_top, same_bottom] = RowsOf(in_picture, 0);
+  const auto [same_top, same_bottom] = RowsOf(in_image, 0);
   ASSERT_GT(std::abs((own_bottom - own_top) / (bottom - top) - 1), 0.02);
   EXPECT_NEAR((same_bottom - same_top) / (bottom - top), 1, 0.01);
   EXPECT_NEAR(same_bottom, bottom, 0.01 * (bottom - top));
   // The whole scene is larger or smaller by one factor.
-  const double s = in_picture.world->camera_height_m() / 1.4;
+  const double s = in_image.world->camera_height_m() / 1.4;
   EXPECT_GT(std::abs(s - 1), 0.02);
-  const Eigen::RowVector3d moved = in_picture.motion.trans.row(0) - in_scene.motion.trans.row(0);
+  const Eigen::RowVector3d moved = in_image.motion.trans.row(0) - in_scene.motion.trans.row(0);
   for (int t = 1; t < track.num_frames(); ++t) {
-    EXPECT_LT((in_picture.motion.trans.row(t) - in_scene.motion.trans.row(t) - moved).norm(), 1e-12) << "by one step";
+    EXPECT_LT((in_image.motion.trans.row(t) - in_scene.motion.trans.row(t) - moved).norm(), 1e-12) << "by one step";
   }
 }
 
-TEST(ShapeTrack, PlacedInThePictureCamerasAreScaledToo) {
+TEST(ShapeTrack, PlacedInTheImageCamerasAreScaledToo) {
   Track track = ShortTrack();
   track.camera_from_scene.assign(track.num_frames(), {});
   track.camera_from_scene[2].camera_from_world_translation = {0.1, 0.2, 0.3};
-  const Track moving = WithShape(BuiltinBody(), track, Tall(), PersonPlacing::kInPicture);
+  const Track moving = WithShape(BuiltinBody(), track, Tall(), PersonPlacing::kInImage);
   const Eigen::Vector3d translation = moving.camera_from_scene[2].camera_from_world_translation;
   EXPECT_LT(translation.cross(Eigen::Vector3d(0.1, 0.2, 0.3)).norm(), 1e-12);
   const double s = translation.x() / 0.1;
@@ -110,7 +110,7 @@ TEST(ShapeTrack, PlacedInThePictureCamerasAreScaledToo) {
   track.camera.model = CameraModel::kWeakPerspective;
   track.weak_camera = MatrixX3d::Constant(track.num_frames(), 3, 90);
   track.weak_camera.rightCols<2>().setConstant(0.3);
-  const Track weak = WithShape(BuiltinBody(), track, Tall(), PersonPlacing::kInPicture);
+  const Track weak = WithShape(BuiltinBody(), track, Tall(), PersonPlacing::kInImage);
   EXPECT_NEAR(weak.weak_camera(0, 0), 90 / s, 1e-9);
   EXPECT_NEAR(weak.weak_camera(0, 1), 0.3 * s, 1e-12);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a clip and a TorchScript file to what `bodyloom track --dense` reads, by the command.
+// From a clip and a TorchScript file to input of `bodyloom track --dense`, by the command.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -219,7 +219,7 @@ def forward(self, image: Tensor):
     assert image.size(0) == 7, "seven"
     return self.coarse, self.coarse, self.fine, self.u, self.v
 )"),
-              AllOf(HasSubstr("failed on a picture of 20x30"), HasSubstr("seven")));
+              AllOf(HasSubstr("failed on an image of 20x30"), HasSubstr("seven")));
 }
 
 TEST_F(DensePoseFile, FifteenCoarseChannelsAreAPersonWhereAnyBodyPartWins) {

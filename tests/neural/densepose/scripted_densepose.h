@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// TorchScript files with DensePose's interface and a known answer: the person is the rectangle of pure red pixels, and
-/// its planes are those that the test gives.
+/// TorchScript files with DensePose's interface and a known result: the person is the rectangle of pure red pixels,
+/// with the planes given by the test.
 #pragma once
 
 #include <torch/script.h>
@@ -16,8 +16,8 @@ struct ScriptedPlanes {
   torch::Tensor coarse, fine, u, v;
 };
 
-/// Logits that say `part` for sure (h×w, 0: background), with u and v (h×w) in the planes of that part and `nowhere` in
-/// all others.
+/// Logits with certain `part` (h×w, 0: background), with u and v (h×w) in the planes of that part and `nowhere` in all
+/// others.
 inline ScriptedPlanes PlanesOf(const torch::Tensor& part, const torch::Tensor& u, const torch::Tensor& v,
                                float nowhere = 0.5F) {
   const auto spread = [&](const torch::Tensor& values, float otherwise) {
@@ -39,7 +39,7 @@ def find(self, red: Tensor, blue: Tensor) -> Tensor:
     return torch.stack([x.min(), y.min(), x.max() + 1, y.max() + 1]).float().unsqueeze(0)
 )";
 
-/// As comfyui_controlnet_aux has it: bytes, 3×H×W, RGB.
+/// Interface of comfyui_controlnet_aux: bytes, 3×H×W, RGB.
 constexpr const char* kScriptedTuple = R"(
 def forward(self, image: Tensor):
     assert image.size(0) == 3 and image.size(1) == image.size(2) and not image.is_floating_point()
@@ -48,7 +48,7 @@ def forward(self, image: Tensor):
     return boxes, self.coarse[:n], self.fine[:n], self.u[:n], self.v[:n]
 )";
 
-/// As dajes/DensePose-TorchScript has it: H×W×3, BGR.
+/// Interface of dajes/DensePose-TorchScript: H×W×3, BGR.
 constexpr const char* kScriptedDict = R"(
 def forward(self, image: Tensor, bgr: bool = True):
     assert image.size(2) == 3 and image.size(0) == image.size(1) and image.is_floating_point() and bgr

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pose-guided renderer does without networks: pose maps, what is hidden in training, coherent maps.
+// Parts of the pose-guided renderer without networks: pose maps, masking in training, coherent maps.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -119,20 +119,20 @@ TEST(GuidedPlan, OnlyTheBareBodyIsKnownAndNotAllOfIt) {
 TEST(CoherentMaps, AColourStaysTheSameWhereverThePersonGoes) {
   const PhotoFrame source = ToyPhotoFrame(4, {}, true);
   CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
-  EXPECT_EQ(FillEmptyTexels(source, OwnPicture(source), 1, {}, &maps), 128);
+  EXPECT_EQ(FillEmptyTexels(source, OwnImage(source), 1, {}, &maps), 128);
   // Moved by whole pixels, the pixel of a point is the pixel of that point in every frame.
-  std::vector<PseudoPicture> pictures;
+  std::vector<PseudoImage> images;
   for (const auto& [dx, dy] : {std::pair{0, 0}, {3, 2}, {-4, 1}, {5, -3}}) {
     const PhotoFrame frame = ToyPhotoFrame(4, {dx, dy, false}, true);
-    pictures.push_back(LookUp(maps, frame));
-    const PseudoPicture& shown = pictures.back();
+    images.push_back(LookUp(maps, frame));
+    const PseudoImage& shown = images.back();
     for (int y = 6; y < 26; ++y) {
       for (int x = 8; x < 24; ++x) {
         const int here = (y + dy) * kToySide + x + dx, first = y * kToySide + x;
-        EXPECT_EQ(shown.known[here], pictures[0].known[first]);
-        EXPECT_EQ(shown.labels[here], pictures[0].labels[first]);
+        EXPECT_EQ(shown.known[here], images[0].known[first]);
+        EXPECT_EQ(shown.labels[here], images[0].labels[first]);
         for (int c = 0; c < 3; ++c) {
-          EXPECT_NEAR(shown.image[c * 1024 + here], pictures[0].image[c * 1024 + first], 2e-7);
+          EXPECT_NEAR(shown.image[c * 1024 + here], images[0].image[c * 1024 + first], 2e-7);
         }
         if (frame.parts[here] == 0) {
           EXPECT_EQ(shown.known[here], 0);
@@ -144,53 +144,53 @@ TEST(CoherentMaps, AColourStaysTheSameWhereverThePersonGoes) {
   double error = 0;
   int count = 0;
   for (int i = 0; i < 1024; ++i) {
-    if (pictures[0].known[i] == 0) continue;
+    if (images[0].known[i] == 0) continue;
     ++count;
-    for (int c = 0; c < 3; ++c) error += std::abs(pictures[0].image[c * 1024 + i] - source.image[c * 1024 + i]);
-    EXPECT_TRUE(pictures[0].labels[i] == source.labels[i] || source.labels[i + 32] != source.labels[i] ||
+    for (int c = 0; c < 3; ++c) error += std::abs(images[0].image[c * 1024 + i] - source.image[c * 1024 + i]);
+    EXPECT_TRUE(images[0].labels[i] == source.labels[i] || source.labels[i + 32] != source.labels[i] ||
                 source.labels[i - 32] != source.labels[i]);
   }
   EXPECT_EQ(count, 64 + 144);
   EXPECT_LT(error / (3 * count), 0.03);
 }
 
-TEST(CoherentMaps, TheFirstPictureOfATexelStays) {
+TEST(CoherentMaps, TheFirstImageOfATexelStays) {
   const PhotoFrame front = ToyPhotoFrame(1, {}, true), behind = ToyPhotoFrame(2, {2, 1, true}, true);
   const PhotoFrame other = ToyPhotoFrame(3, {1, 1, false}, true);
   CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
-  FillEmptyTexels(front, OwnPicture(front), 1, {}, &maps);
+  FillEmptyTexels(front, OwnImage(front), 1, {}, &maps);
   const CoherentMaps before = maps;
-  EXPECT_EQ(FillEmptyTexels(other, OwnPicture(other), 2, {}, &maps), 0);
+  EXPECT_EQ(FillEmptyTexels(other, OwnImage(other), 2, {}, &maps), 0);
   EXPECT_EQ(maps.appearance, before.appearance);
   // Two views: the union.
-  EXPECT_EQ(FillEmptyTexels(behind, OwnPicture(behind), 3, {}, &maps), 128);
+  EXPECT_EQ(FillEmptyTexels(behind, OwnImage(behind), 3, {}, &maps), 128);
   for (int t = 0; t < 256; ++t) {
     EXPECT_EQ(maps.from[t], t % 16 < 8 ? 1 : 3);
     if (before.from[t] != 0) {
       EXPECT_EQ(maps.appearance[t], before.appearance[t]);
     }
   }
-  // What the photo does not show of the person fills nothing.
+  // Texels of the person that the photo does not show remain empty.
   PhotoFrame empty = front;
   empty.labels.assign(empty.labels.size(), 0);
   CoherentMaps none = EmptyMaps(kToyTexels, ToyTexelParts());
-  EXPECT_EQ(FillEmptyTexels(empty, OwnPicture(empty), 1, {}, &none), 0);
-  EXPECT_THROW(FillEmptyTexels(ToyPhotoFrame(0, {}, false), PersonPicture{}, 1, {}, &none), std::invalid_argument);
+  EXPECT_EQ(FillEmptyTexels(empty, OwnImage(empty), 1, {}, &none), 0);
+  EXPECT_THROW(FillEmptyTexels(ToyPhotoFrame(0, {}, false), RenderedPerson{}, 1, {}, &none), std::invalid_argument);
 }
 
 /// Draws what it was given, as if nothing were to be completed.
-PersonPicture Repeat(const PhotoFrame& frame, const PseudoPicture& pseudo) {
-  PersonPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
-  for (size_t i = 0; i < pseudo.known.size(); ++i) picture.alpha[i] = pseudo.known[i] != 0 ? 1.0F : 0.0F;
-  return picture;
+RenderedPerson Repeat(const PhotoFrame& frame, const PseudoImage& pseudo) {
+  RenderedPerson rendered{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
+  for (size_t i = 0; i < pseudo.known.size(); ++i) rendered.alpha[i] = pseudo.known[i] != 0 ? 1.0F : 0.0F;
+  return rendered;
 }
 
 TEST(CompleteMaps, TheBackIsTheFrontWithoutItsFace) {
   const PhotoFrame source = ToyPhotoFrame(1, {1, 1, false}, true);
   CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
-  FillEmptyTexels(source, OwnPicture(source), 1, {}, &maps);
-  const std::vector<PersonPicture> pictures = CompleteMaps(ToyViews(), Repeat, 2, &maps);
-  ASSERT_EQ(pictures.size(), 6U);
+  FillEmptyTexels(source, OwnImage(source), 1, {}, &maps);
+  const std::vector<RenderedPerson> images = CompleteMaps(ToyViews(), Repeat, 2, &maps);
+  ASSERT_EQ(images.size(), 6U);
   int back = 0, shirt = 0, hair = 0, faces = 0;
   for (int r = 0; r < kToyTexels; ++r) {
     for (int c = 0; c < kToyTexels; ++c) {
@@ -224,15 +224,15 @@ TEST(CompleteMaps, NobodyPutsAFaceOnTheBack) {
   const std::vector<PhotoFrame> views = ToyViews();
   const std::vector<uint8_t> no_face = TexelsOfTheBack(views[kViewFront], views[kViewBack]);
   CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
-  EXPECT_EQ(FillEmptyTexels(behind, OwnPicture(behind), 1, no_face, &maps), 64);
-  const auto all_face = [](const PhotoFrame& frame, const PseudoPicture& pseudo) {
-    PersonPicture picture = Repeat(frame, pseudo);
-    for (size_t i = 0; i < picture.labels.size(); ++i) {
+  EXPECT_EQ(FillEmptyTexels(behind, OwnImage(behind), 1, no_face, &maps), 64);
+  const auto all_face = [](const PhotoFrame& frame, const PseudoImage& pseudo) {
+    RenderedPerson rendered = Repeat(frame, pseudo);
+    for (size_t i = 0; i < rendered.labels.size(); ++i) {
       if (frame.parts[i] == 0) continue;
-      picture.labels[i] = 3;
-      picture.alpha[i] = 1;
+      rendered.labels[i] = 3;
+      rendered.alpha[i] = 1;
     }
-    return picture;
+    return rendered;
   };
   CompleteMaps(views, all_face, 2, &maps);
   int faces_in_front = 0;
@@ -255,7 +255,7 @@ TEST(CompleteMaps, WithoutHairTheBackOfTheHeadIsSkin) {
   }
   CoherentMaps maps = EmptyMaps(kToyTexels, ToyTexelParts());
   const PhotoFrame behind = ToyPhotoFrame(1, {0, 0, true}, false);
-  const PseudoPicture back = MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), behind, maps);
+  const PseudoImage back = MirroredFront(ToyPhotoFrame(1, {}, false), OwnImage(front), behind, maps);
   int skin = 0;
   for (size_t i = 0; i < back.labels.size(); ++i) {
     EXPECT_NE(back.labels[i], 3);
@@ -266,7 +266,7 @@ TEST(CompleteMaps, WithoutHairTheBackOfTheHeadIsSkin) {
   // Unless a photo showed some of its back.
   maps.labels[9] = 4, maps.from[9] = 1;
   for (int k = 0; k < 3; ++k) maps.appearance[k * kToyTexels * kToyTexels + 9] = 0.25F * static_cast<float>(k + 1);
-  const PseudoPicture haired = MirroredFront(ToyPhotoFrame(1, {}, false), OwnPicture(front), behind, maps);
+  const PseudoImage haired = MirroredFront(ToyPhotoFrame(1, {}, false), OwnImage(front), behind, maps);
   int hair = 0;
   for (size_t i = 0; i < haired.labels.size(); ++i) {
     if (haired.labels[i] != 4) continue;
@@ -290,40 +290,40 @@ TEST(ChoosePhotos, AFaceFirstThenWhatIsMissing) {
 
 TEST(GuidedScores, AreWhatTheyShouldBe) {
   const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
-  PersonPicture picture = OwnPicture(truth);
+  RenderedPerson rendered = OwnImage(truth);
   PersonScorer perfect(LikenessScoring()), off;
-  perfect.Add(picture, truth);
+  perfect.Add(rendered, truth);
   EXPECT_EQ(perfect.Scores().image_l1, 0);
   EXPECT_EQ(perfect.Scores().silhouette_iou, 1);
   EXPECT_EQ(perfect.Scores().label_iou, 1);
   EXPECT_NEAR(perfect.Scores().lpips, 0, 1e-9);
   // A quarter lighter on the person, all of it shirt, and as many pixels again taken for the person.
   double people = 0, shirt = 0;
-  for (size_t i = 0; i < picture.labels.size(); ++i) {
+  for (size_t i = 0; i < rendered.labels.size(); ++i) {
     if (truth.labels[i] == 0) continue;
     people += 1;
     shirt += truth.labels[i] == 1 ? 1 : 0;
-    picture.labels[i] = 1;
-    for (size_t c = 0; c < 3; ++c) picture.image[c * 1024 + i] += 0.25F;
+    rendered.labels[i] = 1;
+    for (size_t c = 0; c < 3; ++c) rendered.image[c * 1024 + i] += 0.25F;
   }
   int added = 0;
   for (size_t i = 0; added < people; ++i) {
     if (truth.labels[i] != 0) continue;
-    picture.labels[i] = 2;
+    rendered.labels[i] = 2;
     ++added;
   }
-  off.Add(picture, truth);
+  off.Add(rendered, truth);
   EXPECT_NEAR(off.Scores().image_l1, 0.25, 1e-6);
   EXPECT_NEAR(off.Scores().psnr_db, -20 * std::log10(0.25), 1e-4);
   EXPECT_NEAR(off.Scores().silhouette_iou, 0.5, 1e-9);
   EXPECT_NEAR(off.Scores().label_iou, shirt / people / 4, 1e-9);
   EXPECT_TRUE(std::isnan(off.Scores().lpips));
-  EXPECT_THROW(off.Add(picture, ToyPhotoFrame(1, {}, false)), std::invalid_argument);
+  EXPECT_THROW(off.Add(rendered, ToyPhotoFrame(1, {}, false)), std::invalid_argument);
 }
 
 TEST(GuidedScores, TrainedWeightsMeasureWhereTheyAreGiven) {
   const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
-  PersonPicture darker = OwnPicture(truth);
+  RenderedPerson darker = OwnImage(truth);
   for (float& value : darker.image) value *= 0.8F;
   const auto scores = [&](const LikenessWeights& weights) {
     PersonScorer scorer(LikenessScoring(weights));
@@ -335,17 +335,17 @@ TEST(GuidedScores, TrainedWeightsMeasureWhereTheyAreGiven) {
                                    {HeadWeights(), "lpips_alex.pth"},
                                    {TrunkWeights(vgg, FeatureLayers(vgg, {"relu4_2"})[0]), "vgg19.pth"}};
   const PersonScores trained = scores(weights), random = scores({});
-  const Image picture = ToImage(torch::tensor(darker.image).view({3, 32, 32}));
-  const Image true_picture = ToImage(torch::tensor(truth.image).view({3, 32, 32}));
+  const Image rendered = ToImage(torch::tensor(darker.image).view({3, 32, 32}));
+  const Image true_image = ToImage(torch::tensor(truth.image).view({3, 32, 32}));
   EXPECT_FALSE(trained.lpips_random_features || trained.contextual_random_features);
-  EXPECT_NEAR(trained.lpips, LpipsFrom(weights.alexnet, weights.lpips_heads).Distance(picture, true_picture).value,
+  EXPECT_NEAR(trained.lpips, LpipsFrom(weights.alexnet, weights.lpips_heads).Distance(rendered, true_image).value,
               1e-4 * trained.lpips);
   ContextualMetric contextual;
   contextual.Load(weights.vgg19.weights, "vgg19.pth");
-  EXPECT_NEAR(trained.contextual, contextual(picture, true_picture).distance, 1e-4 * trained.contextual);
+  EXPECT_NEAR(trained.contextual, contextual(rendered, true_image).distance, 1e-4 * trained.contextual);
   EXPECT_TRUE(random.lpips_random_features && random.contextual_random_features);
   // The substitute is that of every other renderer.
-  EXPECT_NEAR(random.lpips, Lpips().Distance(picture, true_picture).value, 1e-4 * random.lpips);
+  EXPECT_NEAR(random.lpips, Lpips().Distance(rendered, true_image).value, 1e-4 * random.lpips);
   // Either without the other.
   const PersonScores half = scores({weights.alexnet, weights.lpips_heads, {}});
   EXPECT_TRUE(!half.lpips_random_features && half.contextual_random_features);
@@ -353,12 +353,12 @@ TEST(GuidedScores, TrainedWeightsMeasureWhereTheyAreGiven) {
 
 TEST(GuidedScores, StabilityIsWithinAPerson) {
   const PhotoFrame truth = ToyPhotoFrame(1, {}, true);
-  PersonPicture darker = OwnPicture(truth), darkest = darker;
+  RenderedPerson darker = OwnImage(truth), darkest = darker;
   for (float& value : darker.image) value *= 0.8F;
   for (float& value : darkest.image) value *= 0.5F;
-  const auto distance = [&](const PersonPicture& picture) {
+  const auto distance = [&](const RenderedPerson& rendered) {
     PersonScorer scorer(LikenessScoring());
-    scorer.Add(picture, truth);
+    scorer.Add(rendered, truth);
     EXPECT_EQ(scorer.Scores().lpips_deviation, 0) << "one frame";
     return scorer.Scores().lpips;
   };
@@ -366,7 +366,7 @@ TEST(GuidedScores, StabilityIsWithinAPerson) {
   ASSERT_GT(std::abs(a - b), 1e-4);
   // Two people who are each drawn the same in every frame, one of them badly: steady.
   PersonScorer steady(LikenessScoring()), unsteady(LikenessScoring());
-  for (const PersonPicture* person : {&darker, &darkest}) {
+  for (const RenderedPerson* person : {&darker, &darkest}) {
     for (int k = 0; k < 3; ++k) steady.Add(*person, truth);
     steady.NextPerson();
   }

@@ -277,13 +277,13 @@ TEST(GuidedModel, WhatIsLeftOutOfTheSourceIsNotInTheTargetEither) {
       other.silhouette = 1 - silhouette;
       EXPECT_EQ(differs(other), contour) << part << " with guesses " << guesses;
       other = pseudo;
-      other.extent = 1 - pseudo.extent;
+      other.clothes_offset = 1 - pseudo.clothes_offset;
       EXPECT_EQ(differs(other), contour && guesses) << part;
     }
   }
 }
 
-TEST(GuidedPictures, WhereThePersonIsTheLikeliestGarmentCounts) {
+TEST(GuidedImages, WhereThePersonIsTheLikeliestGarmentCounts) {
   // GarNet thinks of the background at every pixel, and of shoes or of a face next.
   GuidedResult result;
   result.silhouette = torch::ones({1, 1, 32, 32});
@@ -294,10 +294,10 @@ TEST(GuidedPictures, WhereThePersonIsTheLikeliestGarmentCounts) {
   result.label_logits.slice(1, 6, 7).fill_(5);
   result.label_logits.slice(1, 3, 4).slice(3, 16).fill_(7);
   result.classes = torch::zeros({1, 1, 32, 32});
-  const PersonPicture picture = PictureOf(result, {}, 0, {0, 0, 8, 8}, 4, 32);
-  EXPECT_EQ(picture.labels[0], 0) << "off the person";
-  EXPECT_EQ(picture.labels[5 * 32 + 3], 6);
-  EXPECT_EQ(picture.labels[5 * 32 + 20], 3);
+  const RenderedPerson rendered = RenderedPersonOf(result, {}, 0, {0, 0, 8, 8}, 4, 32);
+  EXPECT_EQ(rendered.labels[0], 0) << "off the person";
+  EXPECT_EQ(rendered.labels[5 * 32 + 3], 6);
+  EXPECT_EQ(rendered.labels[5 * 32 + 20], 3);
 }
 
 /// Output of an untrained SilNet whose other convolutions are zero.
@@ -329,7 +329,7 @@ TEST(SilNet, AnUntrainedOnePredictsWhatIsLikely) {
   EXPECT_NEAR(skirt[16][15].item<double>(), 4, 0.7);
   EXPECT_NEAR(skirt[16][22].item<double>(), 4, 0.7);
   EXPECT_NEAR(skirt[16][24].item<double>(), -2, 0.7);
-  // Where the source's silhouette is left out nobody knows of a skirt: the bare body.
+  // Without the source's silhouette a skirt is unknown, so the bare body is used.
   GuidedConfig without = ToyGuidedWithGuesses();
   LeaveOut("source-silhouette", &without);
   const Tensor none = UntrainedSilhouette(without, pose, torch::zeros_like(seen));

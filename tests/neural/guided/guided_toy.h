@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Toy people for the pose-guided renderer: two rectangles in a square window, whose texels lie on a plane.
 ///
-/// The body is a head (chart 23) on a torso (chart 2 in front, 1 behind); its clothes are a pixel wider on either side.
-/// The atlas has the front's torso left below, the back's right below and the head above, left half front, right half
-/// back. A frame shows the body moved by (dx, dy), from the front or from behind; colours and labels go with the texels
-/// and the person.
+/// The body is a head (chart 23) on a torso (chart 2 in front, 1 behind); its clothes are one pixel wider on either
+/// side. The atlas has the front's torso at the lower left, the back's at the lower right and the head above, front in
+/// the left half, back in the right. A frame shows the body moved by (dx, dy), from the front or from behind; colours
+/// and labels depend on texel and person.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ inline GuidedConfig ToyGuided() {
   return config;
 }
 
-/// With everything that the small profiles add to the paper's networks.
+/// Configuration with all additions of the small profiles to the paper's networks.
 inline GuidedConfig ToyGuidedWithGuesses() {
   GuidedConfig config = ToyGuided();
   GuidedProfile& p = config.profile;
@@ -41,7 +41,7 @@ inline std::vector<uint8_t> ToyTexelParts() {
   return parts;
 }
 
-/// A head on a torso, both flat: the back lies behind the front, mirrored.
+/// Positions of texels of a head on a torso, both flat: the back is behind the front, mirrored.
 inline std::vector<float> ToyTexelPlaces() {
   constexpr int kTexels = kToyTexels * kToyTexels;
   std::vector<float> places(3 * kTexels);
@@ -75,7 +75,7 @@ struct ToyPose {
 };
 
 /// The head covers 8 × 8 pixels, the torso 12 × 12 below it.
-inline PhotoFrame ToyPhotoFrame(int person, const ToyPose& pose, bool picture) {
+inline PhotoFrame ToyPhotoFrame(int person, const ToyPose& pose, bool image) {
   constexpr int kArea = kToySide * kToySide, kTexels = kToyTexels * kToyTexels;
   PhotoFrame frame;
   frame.size = kToySide;
@@ -84,7 +84,7 @@ inline PhotoFrame ToyPhotoFrame(int person, const ToyPose& pose, bool picture) {
   frame.texture_size = kToyTexels;
   frame.texel_pixels.assign(2 * kTexels, 0);
   frame.texel_cosine.assign(kTexels, 0);
-  if (picture) {
+  if (image) {
     frame.image.assign(3 * kArea, 0);
     frame.labels.assign(kArea, 0);
   }
@@ -110,7 +110,7 @@ inline PhotoFrame ToyPhotoFrame(int person, const ToyPose& pose, bool picture) {
           frame.uv[i] = (static_cast<float>(column) + u) / kToyTexels;
           frame.uv[kArea + i] = 1 - (static_cast<float>(patch.row) + ty) / kToyTexels;
         }
-        if (!picture) continue;
+        if (!image) continue;
         const int c = std::min(7, std::max(0, static_cast<int>(pose.behind ? 8 - tx : tx))) + column;
         const int r = std::min(7, static_cast<int>(ty)) + patch.row;
         frame.labels[i] = ToyLabel(r, c);
@@ -133,7 +133,7 @@ inline PhotoFrame ToyPhotoFrame(int person, const ToyPose& pose, bool picture) {
   return frame;
 }
 
-/// Frame k of a toy person: moved about, every third from behind.
+/// Pose of frame k of a toy person: moved, every third from behind.
 inline ToyPose ToyPoseOf(int frame) { return {frame * 3 % 7 - 3, frame * 2 % 5 - 2, frame % 3 == 2}; }
 
 inline PhotoSource ToyPeople(int people, int frames) {
@@ -147,7 +147,7 @@ inline PhotoSource ToyPeople(int people, int frames) {
   return source;
 }
 
-/// Front and back; from the sides nothing is seen of a toy but its front, moved.
+/// Front and back views; side views show only the front, moved.
 inline std::vector<PhotoFrame> ToyViews() {
   std::vector<PhotoFrame> views;
   views.reserve(6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pose-guided renderer learns toy people, goes on where it stopped, and draws them.
+// Training of the pose-guided renderer on toy people, resuming, and rendering.
 #include <gtest/gtest.h>
 #include <torch/cuda.h>
 
@@ -126,12 +126,12 @@ TEST(GuidedTraining, LearnsAPairByHeart) {
   const std::vector<PhotoFrame> photos = {ToyPhotoFrame(0, ToyPoseOf(0), true), ToyPhotoFrame(0, {0, 0, true}, true)};
   EXPECT_THROW(renderer.Render(photos[0]), std::invalid_argument);
   renderer.SetSource(std::span(photos).first(1), {kTexelParts, kViews});
-  EXPECT_EQ(renderer.virtual_pictures().size(), 6U);
-  const PersonPicture picture = renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false));
+  EXPECT_EQ(renderer.virtual_images().size(), 6U);
+  const RenderedPerson rendered = renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false));
   PersonScorer scorer;
-  scorer.Add(picture, ToyPhotoFrame(0, ToyPoseOf(1), true));
+  scorer.Add(rendered, ToyPhotoFrame(0, ToyPoseOf(1), true));
   EXPECT_NEAR(scorer.Scores().image_l1, summary.scores.image_l1, 1e-6);
-  EXPECT_EQ(renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false)).image, picture.image);
+  EXPECT_EQ(renderer.Render(ToyPhotoFrame(0, ToyPoseOf(1), false)).image, rendered.image);
   EXPECT_EQ(renderer.frames_kept(), 1);
   int back_of_one = 0, back_of_two = 0, faces_behind = 0;
   const auto count = [&](int* back) {
@@ -192,7 +192,7 @@ TEST(GuidedTraining, EveryAblationTrainsAndDraws) {
     GuidedRenderer renderer(CheckpointPath(options.run_dir), options.config, {0, {}, 1});
     const PhotoFrame photo = ToyPhotoFrame(0, {}, true);
     renderer.SetSource(std::span(&photo, 1), {kTexelParts, kViews});
-    EXPECT_EQ(renderer.virtual_pictures().empty(), !options.config.uv_appearance);
+    EXPECT_EQ(renderer.virtual_images().empty(), !options.config.uv_appearance);
     for (const float value : renderer.Render(ToyPhotoFrame(0, {1, 1, false}, false)).image) {
       ASSERT_TRUE(value >= 0 && value <= 1);
     }
@@ -281,14 +281,14 @@ TEST(GuidedTraining, CompletesTheMapsByTheirNeighbours) {
   EXPECT_THROW(renderer.SetSource(std::span(&photo, 1), {kTexelParts, kViews}), std::invalid_argument)
       << "no neighbours";
   renderer.SetSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours});
-  EXPECT_TRUE(renderer.virtual_pictures().empty());
+  EXPECT_TRUE(renderer.virtual_images().empty());
   for (const uint8_t from : renderer.maps().from) EXPECT_NE(from, 0);
-  const PersonPicture guessed = renderer.Render(pose);
+  const RenderedPerson guessed = renderer.Render(pose);
   // The same networks and the paper's completion, and none.
   for (const MapCompletion completion : {MapCompletion::kVirtualViews, MapCompletion::kNone}) {
     GuidedRenderer other(CheckpointPath(options.run_dir), options.config, {2, completion, 1});
     other.SetSource(std::span(&photo, 1), {kTexelParts, kViews, &neighbours});
-    EXPECT_EQ(other.virtual_pictures().empty(), completion == MapCompletion::kNone);
+    EXPECT_EQ(other.virtual_images().empty(), completion == MapCompletion::kNone);
     EXPECT_NE(other.Render(pose).image, guessed.image);
   }
   PhotoSource placeless = people;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is made up of a source that its photos do not show: labels, colours, how far clothes stand off.
+// Completion of source maps where photos show nothing: labels, colours, distance of clothes from the body.
 #include "neural/guided/source_maps.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "render/garment/clothes_extent.h"
+#include "render/garment/clothes_offset_map.h"
 #include "tests/neural/guided/guided_toy.h"
 
 namespace bodyloom::source_maps_test {
@@ -20,13 +20,13 @@ const std::vector<PhotoFrame> kViews = ToyViews();
 
 TexelNeighbours ToyNeighbours() { return {kToyTexels, kTexelParts, ToyTexelPlaces()}; }
 
-TEST(GuessRest, TheBackIsTheFrontAndItsHeadHasHair) {
+TEST(CompleteEmptyTexels, TheBackIsTheFrontAndItsHeadHasHair) {
   const PhotoFrame photo = ToyPhotoFrame(1, {}, true);
   const TexelNeighbours neighbours = ToyNeighbours();
   const SourceMaps source =
       MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNearest, false, {});
   EXPECT_EQ(source.texels_seen, 128);
-  EXPECT_TRUE(source.virtual_pictures.empty());
+  EXPECT_TRUE(source.virtual_images.empty());
   for (int t = 0; t < kTexels; ++t) {
     const int r = t / kToyTexels, c = t % kToyTexels;
     EXPECT_EQ(source.maps.from[t], c < 8 ? 1 : 2) << t;
@@ -43,7 +43,7 @@ TEST(GuessRest, TheBackIsTheFrontAndItsHeadHasHair) {
   }
 }
 
-TEST(GuessRest, WithoutHairTheBackOfTheHeadIsSkinOfTheFacesColour) {
+TEST(CompleteEmptyTexels, WithoutHairTheBackOfTheHeadIsSkinOfTheFacesColour) {
   PhotoFrame photo = ToyPhotoFrame(1, {}, true);
   for (int i = 0; i < 1024; ++i) {
     if (photo.labels[i] == 4) photo.labels[i] = 3;
@@ -76,10 +76,10 @@ PhotoFrame LabelledByParts(const ToyPose& pose) {
 TEST(MapsOfSource, ABackOfTheHeadThatIsSeenStaysWhateverItIsCalled) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photos[] = {LabelledByParts({}), LabelledByParts({2, 1, true})};
-  const auto repeat = [](const PhotoFrame& frame, const PseudoPicture& pseudo) {
-    PersonPicture picture{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
-    std::copy(pseudo.known.begin(), pseudo.known.end(), picture.alpha.begin());
-    return picture;
+  const auto repeat = [](const PhotoFrame& frame, const PseudoImage& pseudo) {
+    RenderedPerson rendered{frame.size, pseudo.image, std::vector<float>(pseudo.known.size()), pseudo.labels};
+    std::copy(pseudo.known.begin(), pseudo.known.end(), rendered.alpha.begin());
+    return rendered;
   };
   for (const MapCompletion completion : {MapCompletion::kNone, MapCompletion::kNearest, MapCompletion::kVirtualViews}) {
     const SourceMaps source = MapsOfSource(photos, {kTexelParts, kViews, &neighbours}, completion, false, repeat);
@@ -93,7 +93,7 @@ TEST(MapsOfSource, ABackOfTheHeadThatIsSeenStaysWhateverItIsCalled) {
       }
     }
   }
-  // Where the parsing knows hair, what it calls a face there is one: the skin before the ears.
+  // If the parsing has hair, its face labels at the side of the head are skin before the ears.
   PhotoFrame behind = ToyPhotoFrame(1, {0, 0, true}, true);
   for (int y = 10; y < 14; ++y) {
     for (int x = 12; x < 20; ++x) behind.labels[y * kToySide + x] = 3;
@@ -106,7 +106,7 @@ TEST(MapsOfSource, ABackOfTheHeadThatIsSeenStaysWhateverItIsCalled) {
   }
 }
 
-TEST(GuessRest, WhatIsUnseenOfTheBackOfTheHeadIsHairThatIsSeen) {
+TEST(CompleteEmptyTexels, WhatIsUnseenOfTheBackOfTheHeadIsHairThatIsSeen) {
   const TexelNeighbours neighbours = ToyNeighbours();
   PhotoFrame behind = LabelledByParts({0, 0, true});
   // Of the back of the head its left half.
@@ -128,7 +128,7 @@ TEST(GuessRest, WhatIsUnseenOfTheBackOfTheHeadIsHairThatIsSeen) {
   EXPECT_EQ(guessed, 32);
 }
 
-TEST(GuessRest, WithoutHairTheBackOfTheHeadNeverHasTheHandsColour) {
+TEST(CompleteEmptyTexels, WithoutHairTheBackOfTheHeadNeverHasTheHandsColour) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photo = LabelledByParts({});
   const CoherentMaps maps =
@@ -144,12 +144,12 @@ TEST(GuessRest, WithoutHairTheBackOfTheHeadNeverHasTheHandsColour) {
   }
 }
 
-TEST(GuessRest, AMapThatHoldsNothingStaysEmpty) {
+TEST(CompleteEmptyTexels, AMapThatHoldsNothingStaysEmpty) {
   CoherentMaps maps = EmptyMaps(kToyTexels, kTexelParts);
-  EXPECT_EQ(GuessRest(ToyNeighbours(), 1, &maps), 0);
+  EXPECT_EQ(CompleteEmptyTexels(ToyNeighbours(), 1, &maps), 0);
   EXPECT_TRUE(std::all_of(maps.from.begin(), maps.from.end(), [](uint8_t from) { return from == 0; }));
-  EXPECT_THROW(GuessRest(ToyNeighbours(), 0, &maps), std::invalid_argument);
-  EXPECT_THROW(GuessRest({2, std::vector<uint8_t>(4, 2), std::vector<float>(12, 0.5F)}, 1, &maps),
+  EXPECT_THROW(CompleteEmptyTexels(ToyNeighbours(), 0, &maps), std::invalid_argument);
+  EXPECT_THROW(CompleteEmptyTexels({2, std::vector<uint8_t>(4, 2), std::vector<float>(12, 0.5F)}, 1, &maps),
                std::invalid_argument);
 }
 
@@ -162,7 +162,7 @@ TEST(MapsOfSource, SaysWhatIsMissing) {
   EXPECT_THROW(MapsOfSource(one, {kTexelParts}, MapCompletion::kNone, true, {}), std::invalid_argument);
   const SourceMaps none = MapsOfSource(one, {kTexelParts}, MapCompletion::kNone, false, {});
   EXPECT_EQ(none.texels_seen, 128);
-  EXPECT_TRUE(none.maps.extent.empty());
+  EXPECT_TRUE(none.maps.clothes_offset.empty());
 }
 
 TEST(MapsOfSource, ThePhotoThatSeesATexelMostFromTheFrontFillsIt) {
@@ -172,7 +172,7 @@ TEST(MapsOfSource, ThePhotoThatSeesATexelMostFromTheFrontFillsIt) {
     photos[0].texel_cosine[t] = 0.5F;
     photos[1].texel_cosine[t] = t % 3 == 0 ? 0.5F : t % 3 == 1 ? 0.4F : 0.6F;
   }
-  // Where it shows nobody it fills nothing, however well it is seen.
+  // Texels without a person in the photo are not filled, however well they are seen.
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < kToySide; ++x) photos[1].labels[y * kToySide + x] = 0;
   }
@@ -207,7 +207,7 @@ TEST(MapsOfSource, WithoutGarmentsAPersonIsAPerson) {
       for (int k = 0; k < 3; ++k) EXPECT_EQ(maps.appearance[k * kTexels + t], whole.appearance[k * kTexels + t]);
     }
   }
-  EXPECT_EQ(maps.extent, whole.extent) << "how far clothes stand off is the silhouette's";
+  EXPECT_EQ(maps.clothes_offset, whole.clothes_offset) << "how far clothes stand off is the silhouette's";
 }
 
 TEST(MapsOfSource, AnotherOneLendsWhatIsWornAndNothingElse) {
@@ -246,52 +246,53 @@ PhotoFrame InASkirt(int wider) {
   return frame;
 }
 
-TEST(ClothesExtent, IsHowFarTheyStandOff) {
+TEST(ClothesOffsetMap, IsHowFarTheyStandOff) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const double diagonal = std::hypot(12, 12);
   for (const int wider : {0, 1, 4}) {
-    const std::vector<float> extent = ClothesExtent(InASkirt(wider), neighbours);
-    ASSERT_EQ(extent.size(), size_t{kTexels});
+    const std::vector<float> clothes_offset = ClothesOffsetMap(InASkirt(wider), neighbours);
+    ASSERT_EQ(clothes_offset.size(), size_t{kTexels});
     // A texel beside the torso's rim at half its height, on the front and, by its neighbours, on the back.
     for (const int column : {0, 7, 8, 15}) {
-      EXPECT_NEAR(extent[12 * kToyTexels + column], wider / diagonal, 1e-6) << wider << " at " << column;
+      EXPECT_NEAR(clothes_offset[12 * kToyTexels + column], wider / diagonal, 1e-6) << wider << " at " << column;
     }
-    EXPECT_NEAR(extent[4 * kToyTexels], 0, 1e-6) << "the head is bare";
+    EXPECT_NEAR(clothes_offset[4 * kToyTexels], 0, 1e-6) << "the head is bare";
   }
   const PhotoFrame trousers = InASkirt(0);
-  for (const float e : ClothesExtent(trousers, neighbours)) EXPECT_EQ(e, 0);
+  for (const float e : ClothesOffsetMap(trousers, neighbours)) EXPECT_EQ(e, 0);
 }
 
-TEST(ClothesExtent, IsLookedUpInAnotherPose) {
+TEST(ClothesOffsetMap, IsLookedUpInAnotherPose) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photo = InASkirt(3);
   CoherentMaps maps =
       MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
   const PhotoFrame behind = ToyPhotoFrame(1, {2, 1, true}, false);
-  const PseudoPicture seen = LookUp(maps, behind);
-  ASSERT_EQ(seen.extent.size(), 1024U);
-  EXPECT_NEAR(seen.extent[21 * kToySide + 13], 3 / std::hypot(12, 12), 1e-5) << "also where the photo shows nothing";
+  const PseudoImage seen = LookUp(maps, behind);
+  ASSERT_EQ(seen.clothes_offset.size(), 1024U);
+  EXPECT_NEAR(seen.clothes_offset[21 * kToySide + 13], 3 / std::hypot(12, 12), 1e-5)
+      << "also where the photo shows nothing";
   EXPECT_EQ(seen.known[21 * kToySide + 13], 0);
-  EXPECT_EQ(seen.extent[0], 0);
+  EXPECT_EQ(seen.clothes_offset[0], 0);
 }
 
 TEST(ClothedBody, AgreesWithASlowTwin) {
   const PhotoFrame pose = ToyPhotoFrame(1, {2, -1, false}, false);
-  std::vector<float> extent(1024);
+  std::vector<float> clothes_offset(1024);
   for (int i = 0; i < 1024; ++i) {
-    if (pose.parts[i] != 0) extent[i] = static_cast<float>((i * 37) % 11) / 60;
+    if (pose.parts[i] != 0) clothes_offset[i] = static_cast<float>((i * 37) % 11) / 60;
   }
-  const std::vector<float> clothed = ClothedBody(pose, extent);
+  const std::vector<float> clothed = ClothedBody(pose, clothes_offset);
   const double diagonal = std::hypot(12, 12);
   int between = 0;
   for (int p = 0; p < 1024; ++p) {
-    double most = -100;
+    double maximum = -100;
     for (int q = 0; q < 1024; ++q) {
       if (pose.parts[q] == 0) continue;
       const int distance = std::max(std::abs(p % kToySide - q % kToySide), std::abs(p / kToySide - q / kToySide));
-      most = std::max(most, diagonal * extent[q] - distance);
+      maximum = std::max(maximum, diagonal * clothes_offset[q] - distance);
     }
-    const double expected = pose.parts[p] != 0 ? 1 : std::clamp(0.5 + most, 0.0, 1.0);
+    const double expected = pose.parts[p] != 0 ? 1 : std::clamp(0.5 + maximum, 0.0, 1.0);
     EXPECT_NEAR(clothed[p], expected, 1e-5) << p;
     between += expected > 0 && expected < 1 ? 1 : 0;
   }
@@ -305,30 +306,30 @@ TEST(ClothedBody, ASkirtCanBeSeenFromBehindAndAtAnotherSize) {
   const PhotoFrame photo = InASkirt(3);
   const CoherentMaps maps =
       MapsOfSource(std::span(&photo, 1), {kTexelParts, {}, &neighbours}, MapCompletion::kNone, true, {}).maps;
-  const PseudoPicture seen = LookUp(maps, ToyPhotoFrame(1, {0, 0, true}, false));
+  const PseudoImage seen = LookUp(maps, ToyPhotoFrame(1, {0, 0, true}, false));
   const auto at = [&](int x, int y) { return seen.clothed[y * kToySide + x]; };
   EXPECT_EQ(at(10, 20), 1) << "the torso's last column";
   EXPECT_NEAR(at(7, 20), 0.5, 1e-4) << "the skirt's last column";
   EXPECT_EQ(at(6, 20), 0);
 }
 
-TEST(ClothesExtent, OfWhatIsLentIsTheLenders) {
+TEST(ClothesOffsetMap, OfWhatIsLentIsTheLenders) {
   const TexelNeighbours neighbours = ToyNeighbours();
   const PhotoFrame photos[] = {InASkirt(1), InASkirt(4)};
   std::vector<uint8_t> lent(kTexels);
   for (int t = kTexels / 2; t < kTexels; ++t) lent[t] = t % kToyTexels < 8 ? 1 : 0;  // the torso's front
-  const std::vector<float> extent =
-      MapsOfSource(photos, {kTexelParts, {}, &neighbours, lent}, MapCompletion::kNone, true, {}).maps.extent;
+  const std::vector<float> clothes_offset =
+      MapsOfSource(photos, {kTexelParts, {}, &neighbours, lent}, MapCompletion::kNone, true, {}).maps.clothes_offset;
   const double diagonal = std::hypot(12, 12);
-  EXPECT_NEAR(extent[12 * kToyTexels], 4 / diagonal, 1e-6);
-  EXPECT_NEAR(extent[12 * kToyTexels + 15], 1 / diagonal, 1e-6);
+  EXPECT_NEAR(clothes_offset[12 * kToyTexels], 4 / diagonal, 1e-6);
+  EXPECT_NEAR(clothes_offset[12 * kToyTexels + 15], 1 / diagonal, 1e-6);
 }
 
-TEST(ClothesExtent, NeedsLabels) {
+TEST(ClothesOffsetMap, NeedsLabels) {
   const TexelNeighbours neighbours = ToyNeighbours();
-  EXPECT_THROW(ClothesExtent(ToyPhotoFrame(1, {}, false), neighbours), std::invalid_argument);
+  EXPECT_THROW(ClothesOffsetMap(ToyPhotoFrame(1, {}, false), neighbours), std::invalid_argument);
   PhotoFrame away = ToyPhotoFrame(1, {100, 0, false}, true);
-  for (const float e : ClothesExtent(away, neighbours)) EXPECT_EQ(e, 0);
+  for (const float e : ClothesOffsetMap(away, neighbours)) EXPECT_EQ(e, 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lifter's network, loss and training. The tracker's own network code is judged by LibTorch.
+// The lifter's network, loss and training. LibTorch is the reference for the tracker's own network code.
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 

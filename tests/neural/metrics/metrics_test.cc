@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// LPIPS, tLPIPS and contextual similarity against slow twins in double precision.
+// LPIPS, tLPIPS and contextual similarity against reference implementations in double precision.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <torch/torch.h>
@@ -179,13 +179,13 @@ TEST(TemporalLpips, ComparesChangesWithChanges) {
 }
 
 /// A window of 40×36 of a picture, its top-left pixel at (x, y); black outside.
-Image WindowAt(const Image& picture, int x, int y) {
+Image WindowAt(const Image& image, int x, int y) {
   Image window(40, 36);
   for (int row = 0; row < 36; ++row) {
     for (int column = 0; column < 40; ++column) {
       const int from_x = x + column, from_y = y + row;
-      if (from_x < 0 || from_y < 0 || from_x >= picture.width || from_y >= picture.height) continue;
-      for (int c = 0; c < 3; ++c) window.pixel(column, row)[c] = picture.pixel(from_x, from_y)[c];
+      if (from_x < 0 || from_y < 0 || from_x >= image.width || from_y >= image.height) continue;
+      for (int c = 0; c < 3; ++c) window.pixel(column, row)[c] = image.pixel(from_x, from_y)[c];
     }
   }
   return window;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Weights of the shapes of published networks, seeded: what a user's files hold.
+/// Random weights with the shapes of published networks, like users' files.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace bodyloom {
 
-/// Of all layers up to `tap`.
+/// Weights of all layers up to `tap`.
 inline NamedWeights TrunkWeights(FeatureTrunk trunk, int tap) {
   FeatureNetworkOptions options;
   options.trunk = trunk;
@@ -22,7 +22,7 @@ inline NamedWeights TrunkWeights(FeatureTrunk trunk, int tap) {
 
 inline NamedWeights AlexNetWeights() { return TrunkWeights(FeatureTrunk::kAlexNet, 11); }
 
-/// LPIPS' own, on AlexNet.
+/// LPIPS' channel weights on AlexNet.
 inline NamedWeights HeadWeights() {
   NamedWeights heads;
   std::mt19937 random(3);

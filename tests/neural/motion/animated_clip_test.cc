@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another person's motion, shown by the person that the motion-dependent renderer learned.
+// Another person's motion applied to the person of a trained motion-dependent renderer.
 #include "pipelines/neural/motion/animated_clip.h"
 
 #include <gmock/gmock.h>

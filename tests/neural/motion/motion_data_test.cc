@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the motion-dependent renderer learns from: a dataset's truth, or what stands in for it in a clip of one's own.
+// Training data of the motion-dependent renderer: a dataset's truth, or its substitutes in a user's clip.
 #include "pipelines/neural/motion/motion_data.h"
 
 #include <gmock/gmock.h>

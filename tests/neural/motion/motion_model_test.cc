@@ -60,7 +60,7 @@ TEST(MotionModel, AblationsLeaveOutWhatTheyName) {
     ToyFrame(1, true, &frames[1]);
     const MotionInput input = InputOf(frames, config);
     EXPECT_EQ(input.motion.defined(), left_out != 3);
-    const MotionStepResult result = model(input, model->Nothing(2, 32, 32));
+    const MotionStepResult result = model(input, model->InitialState(2, 32, 32));
     EXPECT_EQ(result.state.image.sizes(), (std::vector<int64_t>{2, 3, 32, 32}));
     EXPECT_EQ(result.state.labels.defined(), left_out != 1);
     EXPECT_EQ(result.state.normals.defined(), left_out != 2);
@@ -68,13 +68,13 @@ TEST(MotionModel, AblationsLeaveOutWhatTheyName) {
     EXPECT_LE(result.state.image.max().item<float>(), 1);
     if (left_out == 1) continue;
     EXPECT_NEAR((result.state.labels.sum(1) - 1).abs().max().item<float>(), 0, 1e-5);
-    // Where the background is certain there is nothing to see.
+    // Certain background gives zero foreground.
     EXPECT_TRUE(torch::allclose(result.foreground, 1 - result.state.labels.slice(1, 0, 1)));
     EXPECT_TRUE((result.state.image <= result.foreground + 1e-6).all().item<bool>());
   }
 }
 
-/// Where the decoders add nothing, classes and colour are those of the texel that a pixel shows.
+/// If the decoders add nothing, a pixel has the class and colour of its texel.
 TEST(MotionModel, ATexelShowsItsLearnedClassAndColour) {
   const torch::NoGradGuard no_grad;
   torch::manual_seed(4);
@@ -90,7 +90,7 @@ TEST(MotionModel, ATexelShowsItsLearnedClassAndColour) {
     frame.uv[32 * 32 + i] = 1 - (static_cast<float>(i / 32 % 16) + 0.5F) / 16;
   }
   const MotionStepResult result =
-      model(InputOf(std::vector<MotionFrame>{frame}, model->config), model->Nothing(1, 32, 32));
+      model(InputOf(std::vector<MotionFrame>{frame}, model->config), model->InitialState(1, 32, 32));
   const Tensor labels = model->texture->labels_of_texel->weight.flatten(1);
   const Tensor colour = model->texture->colour_of_texel->weight.flatten(1);
   for (const auto& [x, y] :
@@ -107,7 +107,7 @@ TEST(MotionModel, ATexelShowsItsLearnedClassAndColour) {
   }
 }
 
-TEST(MotionModel, ShiftedPicturesComeFromWhereTheyWere) {
+TEST(MotionModel, ShiftedImagesComeFromWhereTheyWere) {
   const Tensor image = torch::arange(2 * 1 * 4 * 5, torch::kFloat).reshape({2, 1, 4, 5});
   const Tensor moved = Shifted(image, 2, -1);
   for (int y = 0; y < 4; ++y) {
@@ -121,7 +121,7 @@ TEST(MotionModel, ShiftedPicturesComeFromWhereTheyWere) {
   EXPECT_EQ(Shifted(image, 5, 0).abs().max().item<float>(), 0);
 }
 
-TEST(MotionModel, FeaturesOfThePicturesPlaneGoStraightToTheDecoders) {
+TEST(MotionModel, FeaturesOfTheImagesPlaneGoStraightToTheDecoders) {
   torch::manual_seed(8);
   MotionModel model(DenseToy());
   model->eval();

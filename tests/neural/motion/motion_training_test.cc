@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(MotionTraining, LearnsFromWhatThePicturesPlaneSays) {
+TEST(MotionTraining, LearnsFromWhatTheImagesPlaneSays) {
   TrainMotionOptions options = ToyOptions("motion_dense");
   options.config = DenseToy();
   options.config.around_body = true;
@@ -46,7 +46,7 @@ TEST(MotionTraining, LearnsFromWhatThePicturesPlaneSays) {
   EXPECT_LT(summary.scores.image_l1, 0.1);
   // The same network from its file, in the same boxes.
   MotionRenderer renderer(CheckpointPath(options.run_dir), options.config,
-                          {.warmup_iterations = 10, .reach = 2, .anywhere = true, .score = true, .num_threads = 1});
+                          {.warmup_iterations = 10, .reach = 2, .whole_window = true, .score = true, .num_threads = 1});
   for (int t = 0; t < 4; ++t) {
     MotionFrame frame;
     DenseToyFrame(t, true, &frame);
@@ -213,10 +213,10 @@ TEST(MotionTraining, WherePeopleRarelyAreTheyHaveTheirColourAllTheSame) {
   MotionRenderer renderer(CheckpointPath(options.run_dir), options.config, {.num_threads = 1});
   MotionFrame frame;
   source(0, false, &frame);
-  const MotionPicture picture = renderer.Next(frame);
+  const MotionImage rendered = renderer.Next(frame);
   double alpha = 0, red = 0;
   for (int y = 18; y < 22; ++y) {
-    for (int x = 10; x < 18; ++x) alpha += picture.alpha[y * 32 + x] / 32, red += picture.image[y * 32 + x] / 32;
+    for (int x = 10; x < 18; ++x) alpha += rendered.alpha[y * 32 + x] / 32, red += rendered.image[y * 32 + x] / 32;
   }
   EXPECT_GT(alpha, 0.1);
   EXPECT_LT(alpha, 0.6);
@@ -329,13 +329,13 @@ TEST(MotionTraining, DoesTheSameOnACard) {
   EXPECT_NEAR(there.scores.image_l1, here.scores.image_l1, 0.02);
   MotionFrame frame;
   ToyFrame(0, false, &frame);
-  MotionPicture pictures[2];
+  MotionImage images[2];
   for (const char* device : {"cpu", "cuda"}) {
     MotionRenderer renderer(CheckpointPath(other.run_dir), other.config,
                             {.warmup_iterations = 0, .reach = 3, .num_threads = 1, .device = device});
-    pictures[device[1] == 'u'] = renderer.Next(frame);
+    images[device[1] == 'u'] = renderer.Next(frame);
   }
-  EXPECT_THAT(pictures[1].image, ::testing::Pointwise(::testing::FloatNear(1e-3F), pictures[0].image));
+  EXPECT_THAT(images[1].image, ::testing::Pointwise(::testing::FloatNear(1e-3F), images[0].image));
   UseNeuralDevice("cpu");
 }
 

@@ -43,8 +43,8 @@ TEST(AlignedBox, BeginsAndEndsAtCells) {
   ExpectBox(AlignedBox({0, 60, 3, 64}, window, 8, 32, 24), {0, 40, 32, 64});     // where there is room
   ExpectBox(AlignedBox({40, 24, 41, 25}, window, 8, 1000, 1000), window);
   ExpectBox(AlignedBox({}, window, 8, 32, 32), {32, 16, 64, 48});
-  EXPECT_EQ(LeastBoxSide(8), 32);
-  EXPECT_EQ(LeastBoxSide(32), 64);
+  EXPECT_EQ(MinBoxSide(8), 32);
+  EXPECT_EQ(MinBoxSide(32), 64);
 }
 
 TEST(PersonBox, HoldsTheBodyAndItsReachAndIsOneSizeForABatch) {
@@ -96,7 +96,7 @@ TEST(PersonBox, CutsFramesAndTensorsAlikeAndPutsThemBack) {
 TEST(PersonBox, ARollOutInItIsThatOfTheCutFrames) {
   torch::manual_seed(5);
   MotionModel model(AroundBody());
-  RollOut roll(model, 2, {kReach, /*anywhere=*/true});
+  RollOut roll(model, 2, {kReach, /*whole_window=*/true});
   MotionModel same(Toy());
   const torch::NoGradGuard no_grad;
   for (size_t i = 0; i < same->parameters().size(); ++i) same->parameters()[i].copy_(model->parameters()[i]);
@@ -126,7 +126,7 @@ TEST(PersonBox, ATrainingWhoseBoxesAreWholeWindowsIsThatOfWholeWindows) {
     options.reach = reach;
     EXPECT_EQ(TrainMotion(source, options).status, TrainingStatus::kFinished);
     MotionRenderer renderer(CheckpointPath(options.run_dir), options.config,
-                            {.warmup_iterations = 0, .reach = reach, .anywhere = true, .num_threads = 1});
+                            {.warmup_iterations = 0, .reach = reach, .whole_window = true, .num_threads = 1});
     return renderer.Next(Frame(1)).image;
   };
   const std::vector<float> whole = train("box_off", false, 0);

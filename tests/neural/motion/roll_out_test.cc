@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The motion-dependent renderer frame by frame, and how far clothes reach.
+// Frame-by-frame rendering of the motion-dependent renderer, and the reach of clothes.
 #include <gtest/gtest.h>
 
 #include "neural/motion/frame_tensors.h"
@@ -16,7 +16,7 @@ TEST(RollOut, KeepsWhatDoesNotChangeAndSaysTheSame) {
   const MotionConfig config = Toy();
   MotionModel model(config);
   RollOut roll(model, 3);
-  MotionState past = model->Nothing(1, 32, 32);
+  MotionState past = model->InitialState(1, 32, 32);
   const torch::NoGradGuard no_grad;
   for (const int t : {2, 2, 2, 3, 4, 4}) {
     MotionFrame frame;
@@ -36,10 +36,10 @@ TEST(RollOut, NothingIsBeyondReach) {
   torch::manual_seed(6);
   const MotionConfig config = Toy();
   MotionModel model(config);  // untrained: sees the person everywhere
-  RollOut anywhere(model, 2), near(model, 2, {3});
+  RollOut whole_window(model, 2), near(model, 2, {3});
   MotionFrame frame;
   ToyFrame(1, false, &frame);
-  const MotionStepResult all = anywhere.Next(frame), kept = near.Next(frame);
+  const MotionStepResult all = whole_window.Next(frame), kept = near.Next(frame);
   int beyond = 0;
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip and networks so small that a training of them takes a second.
+/// A clip and networks small enough to train in a second.
 #pragma once
 
 #include <cmath>
@@ -20,8 +20,8 @@ inline MotionConfig Toy() {
   return config;
 }
 
-/// The person is a square of [6 + t % 4, 22 + t % 4) × [8, 24) in a window of width × height; its shade and its label
-/// follow the first channel of the motion map.
+/// The person is a square of [6 + t % 4, 22 + t % 4) × [8, 24) in a window of width × height; its shade and label
+/// depend on the first channel of the motion map.
 inline void ToyFrameIn(int width, int height, int t, bool with_truth, MotionFrame* frame) {
   const int area = width * height;
   *frame = {};
@@ -50,10 +50,10 @@ inline void ToyFrameIn(int width, int height, int t, bool with_truth, MotionFram
   }
 }
 
-/// In the smallest window.
+/// The same in the smallest window.
 inline void ToyFrame(int t, bool with_truth, MotionFrame* frame) { ToyFrameIn(32, 32, t, with_truth, frame); }
 
-/// The toy's frame described in the picture's plane: the shade is told beside the person, not on it.
+/// The frame with the descriptor in the image plane: the shade is given beside the person, not on it.
 inline void DenseToyFrame(int t, bool with_truth, MotionFrame* frame) {
   ToyFrame(t, with_truth, frame);
   const float level = frame->motion[0];

@@ -211,7 +211,7 @@ TEST(UNet, RefusesSizesThatItCannotHalve) {
   EXPECT_NO_THROW(net(torch::zeros({1, 2, 16, 8})));
 }
 
-/// How many pixels of the input one output pixel depends on, along a side.
+/// Receptive field of one output pixel along a side, input pixels.
 int ReceptiveField(int n_layers) {
   torch::manual_seed(7);
   PatchDiscriminator d(PatchDiscriminatorOptions{1, 2, n_layers});

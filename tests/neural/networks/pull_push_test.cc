@@ -87,7 +87,7 @@ TEST(PullPush, OneColourFillsWhatItReachesAndNothingStaysNothing) {
   const Tensor filled = PullPush(torch::full({1, 1, 32, 32}, 0.7), mask, 5);
   EXPECT_LT((filled - 0.7).abs().max().item<float>(), 1e-6);
   EXPECT_EQ(PullPush(torch::ones({1, 2, 32, 32}), torch::zeros({1, 1, 32, 32}), 5).abs().max().item<float>(), 0);
-  // What the mask hides is not looked at.
+  // Masked pixels have no influence.
   Tensor odd = torch::full({1, 1, 32, 32}, 1e6);
   odd.slice(2, 10, 12).slice(3, 4, 30).fill_(0.7);
   EXPECT_TRUE(torch::equal(PullPush(odd, mask, 5), filled));

@@ -19,35 +19,35 @@ constexpr uint8_t kTopHere = 1, kBottomHere = 2, kSkinHere = 5;
 
 /// A person of 40×56 pixels in 64×64: a red top down to a line that is another in every picture, skin-coloured below,
 /// which the body takes for trousers from row 32 on.
-PackedPicture RedTop(uint64_t seed) {
-  PackedPicture picture;
-  picture.width = picture.height = 64, picture.pixels_per_metre = 100;
-  const size_t pixels = picture.pixels();
-  for (int p = 0; p < kParserPlanes.in; ++p) picture.planes.insert(picture.planes.end(), pixels, PackPlane(p, 0));
-  picture.truth.assign(ParserTruth::kCount * pixels, 0);
+PackedImage RedTop(uint64_t seed) {
+  PackedImage image;
+  image.width = image.height = 64, image.pixels_per_metre = 100;
+  const size_t pixels = image.pixels();
+  for (int p = 0; p < kParserPlanes.in; ++p) image.planes.insert(image.planes.end(), pixels, PackPlane(p, 0));
+  image.truth.assign(ParserTruth::kCount * pixels, 0);
   const int line = 16 + static_cast<int>(Mix(seed) % 32);
   for (int y = 4; y < 60; ++y) {
     for (int x = 12; x < 52; ++x) {
       const size_t i = static_cast<size_t>(y) * 64 + x;
       const bool top = y < line;
-      picture.planes[i] = top ? 200 : 180, picture.planes[pixels + i] = top ? 20 : 130;
-      picture.planes[2 * pixels + i] = top ? 30 : 110;
-      picture.planes[PersonPlane::kAlpha * pixels + i] = 255;
-      picture.planes[(PersonPlane::kPlace + 1) * pixels + i] =
+      image.planes[i] = top ? 200 : 180, image.planes[pixels + i] = top ? 20 : 130;
+      image.planes[2 * pixels + i] = top ? 30 : 110;
+      image.planes[PersonPlane::kAlpha * pixels + i] = 255;
+      image.planes[(PersonPlane::kPlace + 1) * pixels + i] =
           PackPlane(PersonPlane::kPlace + 1, static_cast<float>(32 - y) / 64);
       if (x == 12) continue;  // the mask is a column too wide
-      picture.truth[ParserTruth::kLabel * pixels + i] = top ? kTopHere : kSkinHere;
-      picture.truth[ParserTruth::kBodyLabel * pixels + i] = y < 32 ? kTopHere : kBottomHere;
+      image.truth[ParserTruth::kLabel * pixels + i] = top ? kTopHere : kSkinHere;
+      image.truth[ParserTruth::kBodyLabel * pixels + i] = y < 32 ? kTopHere : kBottomHere;
     }
   }
-  return picture;
+  return image;
 }
 
-std::vector<PackedPicture> RedTops(int first, int count) {
-  std::vector<PackedPicture> pictures;
-  pictures.reserve(count);
-  for (int i = 0; i < count; ++i) pictures.push_back(RedTop(first + i));
-  return pictures;
+std::vector<PackedImage> RedTops(int first, int count) {
+  std::vector<PackedImage> images;
+  images.reserve(count);
+  for (int i = 0; i < count; ++i) images.push_back(RedTop(first + i));
+  return images;
 }
 
 TrainParserOptions FewSteps(const std::string& name) {
@@ -73,7 +73,7 @@ TEST(ParserTraining, LearnsByColourWhatTheBodyDoesNotKnow) {
 }
 
 TEST(ParserTraining, PixelsWithoutAPersonDoNotCount) {
-  std::vector<PackedPicture> pictures = RedTops(0, 2);
+  std::vector<PackedImage> images = RedTops(0, 2);
   TrainParserOptions options = FewSteps("count");
   options.steps = options.report_every = 1;
   double loss = -1;
@@ -81,16 +81,16 @@ TEST(ParserTraining, PixelsWithoutAPersonDoNotCount) {
     loss = progress.At("loss");
     return true;
   };
-  TrainParser(pictures, {}, options);
+  TrainParser(images, {}, options);
   EXPECT_NEAR(loss, std::log(kParserClasses), 1e-4) << "an untrained parser knows nothing";
-  for (PackedPicture& picture : pictures) std::fill(picture.truth.begin(), picture.truth.end(), uint8_t{0});
+  for (PackedImage& image : images) std::fill(image.truth.begin(), image.truth.end(), uint8_t{0});
   options = FewSteps("count");
   options.steps = options.report_every = 1;
   options.progress = [&loss](const TrainingProgress& progress) {
     loss = progress.At("loss");
     return true;
   };
-  TrainParser(pictures, {}, options);
+  TrainParser(images, {}, options);
   EXPECT_EQ(loss, 0);
 }
 
@@ -99,7 +99,7 @@ TEST(ParserTraining, GoesOnAsIfItHadNeverStopped) {
   whole.steps = parts.steps = 12;
   whole.checkpoint_every = parts.checkpoint_every = 6;
   whole.report_every = parts.report_every = 3;
-  const std::vector<PackedPicture> train = RedTops(0, 3);
+  const std::vector<PackedImage> train = RedTops(0, 3);
   TrainParser(train, {}, whole);
   parts.progress = [](const TrainingProgress& progress) { return progress.step < 6; };
   EXPECT_EQ(TrainParser(train, {}, parts).summary.status, TrainingStatus::kStopped);
@@ -114,9 +114,9 @@ TEST(ParserTraining, RefusesWhatItCannotUse) {
   TrainParserOptions options = FewSteps("odd");
   options.crop = 50;
   EXPECT_THROW(TrainParser(RedTops(0, 1), {}, options), std::invalid_argument);
-  std::vector<PackedPicture> pictures = RedTops(0, 1);
-  pictures[0].truth.pop_back();
-  EXPECT_THROW(TrainParser(pictures, {}, FewSteps("short")), std::invalid_argument);
+  std::vector<PackedImage> images = RedTops(0, 1);
+  images[0].truth.pop_back();
+  EXPECT_THROW(TrainParser(images, {}, FewSteps("short")), std::invalid_argument);
 }
 
 }  // namespace

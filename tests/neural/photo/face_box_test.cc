@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heads that the face loss looks at: those whose face looks at the camera.
+// Heads used by the face loss: those whose face is turned to the camera.
 #include <gtest/gtest.h>
 
 #include "data_tools/body/builtin_body.h"

@@ -304,7 +304,7 @@ TEST(GuessTexture, TrainsResumesAndRenders) {
   EXPECT_THROW(renderer.Encode(texture), std::invalid_argument);
   GuessTexture({kToyTexture, source.texel_parts, source.texel_places}, &texture);
   renderer.Encode(texture);
-  EXPECT_EQ(renderer.Render(preview.target).image, preview.picture.image);
+  EXPECT_EQ(renderer.Render(preview.target).image, preview.rendered.image);
 
   PhotoSource placeless = source;
   placeless.texel_places.clear();

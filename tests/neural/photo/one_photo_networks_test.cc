@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every network of the two one-photo renderers by itself: what it is made of, its derivatives, and one batch that it
-// learns by heart.
+// Every network of the two one-photo renderers by itself: its structure, its derivatives, and overfitting of one batch.
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
@@ -115,7 +114,7 @@ TEST(Cards, AgreeWithSumsWorkedOutLayerByLayer) {
   EXPECT_NEAR(1e-9 * static_cast<double>(work[0] + work[1] + work[2]), 146.9, 0.05);
 }
 
-TEST(Cards, AnEmptyBatchCountsAsOnePicture) {
+TEST(Cards, AnEmptyBatchCountsAsOneImage) {
   const torch::NoGradGuard no_grad;
   GuidedConfig config = ToyGuided();
   config.profile.spectral_norm = true;

@@ -33,21 +33,21 @@ TEST_F(PeopleWithBodyErrors, AreOffByUpToWhatIsRequestedEachByItsOwn) {
   const PeopleData wrong(request_), again(request_);
   request_.seed = 2;
   const PeopleData otherwise(request_);
-  double least = 1e9, most = 0;
+  double minimum = 1e9, maximum = 0;
   for (int f = 0; f < 3; ++f) {
     const Track truth = exact.BodyOf(0, f), body = wrong.BodyOf(0, f);
     EXPECT_TRUE(body.motion.poses == again.BodyOf(0, f).motion.poses);
     EXPECT_FALSE(body.motion.poses == otherwise.BodyOf(0, f).motion.poses);
     // The window shows the person larger than the picture does, at most twice as large.
     const double error_px = MeanProjectionError(BuiltinBody(), truth.CameraAt(0), truth.motion, body.motion, 1);
-    least = std::min(least, error_px), most = std::max(most, error_px);
+    minimum = std::min(minimum, error_px), maximum = std::max(maximum, error_px);
   }
-  EXPECT_GT(least, 0.1);
-  EXPECT_LT(most, 2 * 12);
-  EXPECT_GT(most, 1.1 * least);
+  EXPECT_GT(minimum, 0.1);
+  EXPECT_LT(maximum, 2 * 12);
+  EXPECT_GT(maximum, 1.1 * minimum);
 }
 
-TEST_F(PeopleWithBodyErrors, PicturesStayAsTheyAre) {
+TEST_F(PeopleWithBodyErrors, ImagesStayAsTheyAre) {
   const PeopleData exact(request_);
   request_.body_error_px = 1e-3;  // below what is made
   const PeopleData same(request_);

@@ -16,7 +16,7 @@ std::set<int> Partners(const PhotoSource& people, int source, PartnerDiffers dif
   return partners;
 }
 
-PhotoSource People(const std::vector<PicturePlace>& places) {
+PhotoSource People(const std::vector<ImagePlace>& places) {
   PhotoSource people;
   people.num_frames = {static_cast<int>(places.size())};
   people.places = {places};

@@ -205,7 +205,7 @@ TEST(PhotoModel, DerivativesAgreeWithDifferences) {
   }
 }
 
-TEST(PartialTexture, HasTheColoursOfThePicture) {
+TEST(PartialTexture, HasTheColoursOfTheImage) {
   PhotoFrame frame;
   FillToyPhoto(1, 3, &frame);  // a back
   const PartialTexture texture = PartialTextureOf(frame);
@@ -286,7 +286,7 @@ TEST(PartialTexture, GarmentsComeFromTheOtherAndAllElseStaysBitForBit) {
   EXPECT_GT(taken, 20);
   EXPECT_GT(kept, 20);
   EXPECT_EQ(dressed.visible[hidden], 0);
-  // What reaches FeatureNet is untouched as well.
+  // The input of FeatureNet is unchanged as well.
   const TextureTensors before = ToTensors(std::span(&own, 1)), after = ToTensors(std::span(&dressed, 1));
   const Tensor legs = torch::tensor(std::vector<int64_t>(source.texel_parts.begin(), source.texel_parts.end()))
                           .view({1, 1, kToyTexture, kToyTexture}) == 9;
@@ -294,7 +294,7 @@ TEST(PartialTexture, GarmentsComeFromTheOtherAndAllElseStaysBitForBit) {
   EXPECT_FALSE(torch::equal(before.colour, after.colour));
 }
 
-TEST(PartialTexture, TwoPicturesShowMoreThanOne) {
+TEST(PartialTexture, TwoImagesShowMoreThanOne) {
   const PhotoSource source = ToyPhotos(1, 2);
   std::vector<PartialTexture> textures(2);
   PhotoFrame frame;
@@ -400,7 +400,7 @@ TEST(PhotoPairs, AreDrawnFromTheirNumbersAlone) {
   for (const PhotoPair& pair : ValidationPairs(people, first, 20)) EXPECT_NE(pair.source % 2, pair.target % 2);
 }
 
-TEST(PhotoLosses, TextureLossCountsWhatEitherPictureShows) {
+TEST(PhotoLosses, TextureLossCountsWhatEitherImageShows) {
   const Tensor features = torch::zeros({1, 5, 2, 2});
   TextureTensors source = {torch::full({1, 3, 2, 2}, 0.5), torch::zeros({1, 1, 2, 2}), {}};
   TextureTensors target = {torch::full({1, 3, 2, 2}, -0.2), torch::zeros({1, 1, 2, 2}), {}};
@@ -457,12 +457,12 @@ TEST(PhotoScores, AreWhatTheyShouldBeBesideTheTruth) {
   const auto lpips = std::make_shared<const Lpips>();
   PhotoFrame truth;
   FillToyPhoto(0, 0, &truth);
-  PersonPicture picture;
-  picture.size = kToySize;
-  picture.image = truth.image;
-  picture.alpha.assign(truth.labels.begin(), truth.labels.end());
+  RenderedPerson rendered;
+  rendered.size = kToySize;
+  rendered.image = truth.image;
+  rendered.alpha.assign(truth.labels.begin(), truth.labels.end());
   PersonScorer perfect({lpips, nullptr, [](const Image&, const Image&) { return 0.75; }});
-  perfect.Add(picture, truth);
+  perfect.Add(rendered, truth);
   EXPECT_EQ(perfect.Scores().image_l1, 0);
   EXPECT_EQ(perfect.Scores().silhouette_iou, 1);
   EXPECT_EQ(perfect.Scores().ssim, 0.75);
@@ -471,9 +471,9 @@ TEST(PhotoScores, AreWhatTheyShouldBeBesideTheTruth) {
   EXPECT_TRUE(std::isnan(perfect.Scores().label_iou)) << "no labels are drawn";
   PersonScorer off({lpips});
   for (const float by : {0.1F, 0.3F}) {
-    for (size_t i = 0; i < picture.image.size(); ++i) picture.image[i] = truth.image[i] + by;
-    picture.alpha.assign(picture.alpha.size(), 1);
-    off.Add(picture, truth);
+    for (size_t i = 0; i < rendered.image.size(); ++i) rendered.image[i] = truth.image[i] + by;
+    rendered.alpha.assign(rendered.alpha.size(), 1);
+    off.Add(rendered, truth);
   }
   const PersonScores scores = off.Scores();
   EXPECT_EQ(scores.frames, 2);
@@ -482,8 +482,8 @@ TEST(PhotoScores, AreWhatTheyShouldBeBesideTheTruth) {
   EXPECT_NEAR(scores.silhouette_iou, 28.0 * 44 / (64 * 64), 1e-6);
   EXPECT_TRUE(std::isnan(scores.ssim));
   EXPECT_GT(scores.lpips, 0);
-  picture.size = 32;
-  EXPECT_THROW(off.Add(picture, truth), std::invalid_argument);
+  rendered.size = 32;
+  EXPECT_THROW(off.Add(rendered, truth), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one-photo renderer trained on toy people and put to work.
+// Training of the one-photo renderer on toy people, and rendering.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <torch/cuda.h>
@@ -66,10 +66,10 @@ TEST(PhotoTraining, LearnsTwoPeopleByHeart) {
     }
   }
   EXPECT_LT(error / (1.5 * kToyTexture * kToyTexture), 0.1);
-  const PersonPicture picture = renderer.Render(back);
+  const RenderedPerson rendered = renderer.Render(back);
   for (const PhotoPreview& preview : previews) {
     if (preview.pair.person != 1 || preview.pair.source != 0) continue;
-    EXPECT_EQ(preview.picture.image, picture.image) << "training's validation rendered another picture";
+    EXPECT_EQ(preview.rendered.image, rendered.image) << "training's validation rendered another image";
   }
 }
 
@@ -188,12 +188,12 @@ TEST(PhotoTraining, InpaintingTrainsOneNetworkAfterTheOther) {
   ASSERT_EQ(options.TotalSteps(), 9);
   PhotoFrame frame;
   source.fill(0, 0, &frame);
-  std::vector<std::vector<float>> textures, pictures;
+  std::vector<std::vector<float>> textures, images;
   const auto look = [&] {
     PhotoRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, 1});
     renderer.Encode(PartialTextureOf(frame));
     textures.push_back(renderer.CompletedTexture());
-    pictures.push_back(renderer.Render(frame).image);
+    images.push_back(renderer.Render(frame).image);
   };
   for (const int stop : {3, 6, 9}) {
     options.progress = [stop](const TrainingProgress& progress) { return progress.step < stop; };
@@ -203,7 +203,7 @@ TEST(PhotoTraining, InpaintingTrainsOneNetworkAfterTheOther) {
   }
   EXPECT_EQ(textures[0], textures[1]) << "the first network was not fixed";
   EXPECT_EQ(textures[1], textures[2]);
-  EXPECT_NE(pictures[0], pictures[1]) << "the second network did not learn";
+  EXPECT_NE(images[0], images[1]) << "the second network did not learn";
 }
 
 /// The face's column of a run's metrics.csv, summed.
@@ -326,7 +326,7 @@ TEST(PhotoRenderer, ComputesOnlyWhatIsNearTheBody) {
   source.fill(0, 1, &frame);
   near.Encode(PartialTextureOf(frame));
   everywhere.Encode(PartialTextureOf(frame));
-  const PersonPicture cut = near.Render(frame), whole = everywhere.Render(frame);
+  const RenderedPerson cut = near.Render(frame), whole = everywhere.Render(frame);
   const PhotoWindow window = WindowAround(frame, 2, options.config.SmallestSide());
   ASSERT_LT(window.width, kToySize);
   for (int y = 0; y < kToySize; ++y) {
@@ -339,7 +339,7 @@ TEST(PhotoRenderer, ComputesOnlyWhatIsNearTheBody) {
     }
   }
   frame.parts.assign(frame.parts.size(), 0);
-  const PersonPicture nobody = near.Render(frame);
+  const RenderedPerson nobody = near.Render(frame);
   EXPECT_EQ(*std::max_element(nobody.alpha.begin(), nobody.alpha.end()), 0);
 }
 
@@ -354,13 +354,13 @@ TEST(PhotoTraining, DoesTheSameOnACard) {
   EXPECT_NEAR(there.scores.image_l1, here.scores.image_l1, 1e-3);
   PhotoFrame frame;
   source.fill(1, 0, &frame);
-  PersonPicture pictures[2];
+  RenderedPerson images[2];
   for (const char* device : {"cpu", "cuda"}) {
     PhotoRenderer renderer(CheckpointPath(options.run_dir), options.config, {2, 1, device});
     renderer.Encode(PartialTextureOf(frame));
-    pictures[device[1] == 'u'] = renderer.Render(frame);
+    images[device[1] == 'u'] = renderer.Render(frame);
   }
-  EXPECT_THAT(pictures[1].image, ::testing::Pointwise(::testing::FloatNear(1e-3F), pictures[0].image));
+  EXPECT_THAT(images[1].image, ::testing::Pointwise(::testing::FloatNear(1e-3F), images[0].image));
   UseNeuralDevice("cpu");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Toy people for the one-photo renderer: flat cards. The front of a card is the left half of its atlas, the back the
 /// right half; even frames show fronts, odd ones backs, each a little farther to the right. A fringe of two pixels
-/// around the card is clothing that the body does not have.
+/// around the card is clothing beyond the body.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ inline PhotoConfig ToyPhotoConfig(PhotoVariant variant = PhotoVariant::kFull) {
   return {{"toy", kToySize, kToyTexture, 4, {4, 8}, 4, 1, 4, 1, 2, 16, true}, variant};
 }
 
-/// With guesses at what is not seen, and the other kernel on the way up.
+/// Configuration with completion of unseen texels, and the alternative kernel of the upsampling path.
 inline PhotoConfig ToyGuessConfig(PhotoVariant variant = PhotoVariant::kFull) {
   PhotoConfig config = ToyPhotoConfig(variant);
   config.profile.guesses_unseen = true;

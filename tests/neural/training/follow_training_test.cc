@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a caller of a training is told.
+// Progress reports of a training to its caller.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

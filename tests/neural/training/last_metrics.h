@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a run's metrics.csv says last.
+/// Reads the last values of a run's metrics.csv.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace bodyloom {
 
-/// By column; those without a value are left out.
+/// Last value by column; columns without a value are left out.
 inline std::map<std::string, double> LastMetrics(const std::string& run_dir) {
   std::istringstream lines(FileBytes(run_dir + "/metrics.csv"));
   std::string names, row, name, value;

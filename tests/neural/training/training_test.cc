@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Schedules, the metrics log, and checkpoints: a run that stops and goes on ends with the same bits.
+// Schedules, the metrics log, and checkpoints: a resumed run ends bit-identical to an uninterrupted one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <torch/torch.h>

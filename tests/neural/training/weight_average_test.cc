@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages of weights against the sum that they stand for.
+// Averages of weights against the sums that define them.
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rendered person in front of something, at the networks' size and enlarged.
+// Compositing of a rendered person over a background, at the networks' size and enlarged.
 #include "pipelines/animate/background.h"
 
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@
 namespace bodyloom::composite_test {
 namespace {
 
-PersonWindow WindowAt(int width, int height, const Eigen::Vector2i& corner, int picture_width, int picture_height) {
+PersonWindow WindowAt(int width, int height, const Eigen::Vector2i& corner, int image_width, int image_height) {
   PersonWindow window;
   window.width = width, window.height = height;
-  window.picture_width = picture_width, window.picture_height = picture_height;
+  window.image_width = image_width, window.image_height = image_height;
   window.corner = {corner};
   return window;
 }
@@ -33,12 +33,12 @@ struct Person {
   }
 };
 
-TEST(Composite, AtTheNetworksSizeEveryPixelIsImagePlusWhatAlphaLeavesOfThePicture) {
+TEST(Composite, AtTheNetworksSizeEveryPixelIsImagePlusWhatAlphaLeavesOfTheImage) {
   const Person person(5, 4);
   for (const auto& corner :
        {Eigen::Vector2i(2, 3), Eigen::Vector2i(-2, -1), Eigen::Vector2i(9, 6), Eigen::Vector2i(50, 50)}) {
-    Image picture(12, 9, {10, 90, 200});
-    Composite(person.image, person.alpha, WindowAt(5, 4, corner, 12, 9), 0, &picture);
+    Image image(12, 9, {10, 90, 200});
+    Composite(person.image, person.alpha, WindowAt(5, 4, corner, 12, 9), 0, &image);
     for (int y = 0; y < 9; ++y) {
       for (int x = 0; x < 12; ++x) {
         const int u = x - corner.x(), v = y - corner.y();
@@ -47,7 +47,7 @@ TEST(Composite, AtTheNetworksSizeEveryPixelIsImagePlusWhatAlphaLeavesOfThePictur
         const auto expected = [&](int c, float behind) {
           return std::lround((inside ? 255 * person.image[20 * c + v * 5 + u] : 0) + (1 - a) * behind);
         };
-        const Colour colour = picture.at(x, y);
+        const Colour colour = image.at(x, y);
         ASSERT_EQ(colour.red, expected(0, 10)) << x << ", " << y;
         ASSERT_EQ(colour.green, expected(1, 90)) << x << ", " << y;
         ASSERT_EQ(colour.blue, expected(2, 200)) << x << ", " << y;
@@ -63,22 +63,22 @@ TEST(Composite, EnlargedARampStaysOneAndLiesWhereItLay) {
   for (int c = 0; c < 3; ++c) {
     for (int i = 0; i < kSide * kSide; ++i) image.push_back(static_cast<float>(i % kSide + 4) / 16);
   }
-  Image picture(10 * kTimes, 10 * kTimes, {0, 255, 0});
-  Composite(image, alpha, WindowAt(kSide, kSide, {1, 1}, 10, 10), 0, &picture);
+  Image canvas(10 * kTimes, 10 * kTimes, {0, 255, 0});
+  Composite(image, alpha, WindowAt(kSide, kSide, {1, 1}, 10, 10), 0, &canvas);
   for (int y = kTimes * 2; y < kTimes * 8; ++y) {
     for (int x = kTimes * 2; x < kTimes * 8; ++x) {
       const double column = (x + 0.5) / kTimes - 0.5 - 1;
-      ASSERT_NEAR(picture.at(x, y).red, 255 * (column + 4) / 16, 0.51) << x << ", " << y;
+      ASSERT_NEAR(canvas.at(x, y).red, 255 * (column + 4) / 16, 0.51) << x << ", " << y;
     }
   }
-  EXPECT_EQ(picture.at(0, 0), (Colour{0, 255, 0}));
-  EXPECT_EQ(picture.at(29, 15), (Colour{0, 255, 0}));
+  EXPECT_EQ(canvas.at(0, 0), (Colour{0, 255, 0}));
+  EXPECT_EQ(canvas.at(29, 15), (Colour{0, 255, 0}));
 }
 
-TEST(Composite, PicturesAreAsLargeAsTheNetworksDrawOrAsTheCamera) {
+TEST(Composite, ImagesAreAsLargeAsTheNetworksDrawOrAsTheCamera) {
   const PersonWindow window = WindowAt(64, 96, {0, 0}, 108, 72);
   const Camera camera = MakePinhole(1920, 1280, 1500);
-  const PictureSize small = SizeOfPictures(window, camera, false), large = SizeOfPictures(window, camera, true);
+  const ImageSize small = SizeOfImages(window, camera, false), large = SizeOfImages(window, camera, true);
   EXPECT_EQ(small.width, 108);
   EXPECT_EQ(small.height, 72);
   EXPECT_EQ(large.width, 1920);

@@ -31,7 +31,7 @@ TEST(MotionErrors, EveryScoreIsInTheFileAndInTheQuarters) {
             "2,0.2,0.8,0.02,0.002,1\n3,0.3,0.7,0.03,0.003,0.75\n4,0.4,0.6,0.04,0.004,\n");
   const nlohmann::json json = ToJson(errors.Quarters());
   ASSERT_EQ(json.size(), 4U);
-  EXPECT_EQ(json[0]["least_similarity"], 0.25);  // frame 1
+  EXPECT_EQ(json[0]["min_similarity"], 0.25);  // frame 1
   EXPECT_DOUBLE_EQ(json[0]["ssim"], 0.9);
   EXPECT_DOUBLE_EQ(json[0]["lpips"], 0.01);
   EXPECT_DOUBLE_EQ(json[0]["tlpips"], 0.001);

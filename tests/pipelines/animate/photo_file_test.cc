@@ -12,10 +12,10 @@
 #include "data_tools/video/photo_file.h"
 #include "data_tools/video/video_writer.h"
 #include "pipelines/animate/person_segmentation.h"
-#include "pipelines/animate/photo_pictures.h"
+#include "pipelines/animate/read_photos.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
-#include "tests/support/odd_pictures.h"
+#include "tests/support/odd_images.h"
 
 namespace bodyloom::photo_file_test {
 namespace {
@@ -103,11 +103,11 @@ TEST_F(PhotoFiles, WhatIsCutOffAnywhereIsRefused) {
       FileErrorOf(path, [&] { (void)ReadPhoto(path); });
     }
     WriteBytes(path, whole.substr(0, whole.size() / 2));
-    EXPECT_THAT(FileErrorOf(path, [&] { (void)ReadPhoto(path); }), HasSubstr("ends before its picture does"));
+    EXPECT_THAT(FileErrorOf(path, [&] { (void)ReadPhoto(path); }), HasSubstr("ends before its image does"));
     WriteBytes(path, whole + std::string(100, '\0'));  // as phones append what moves
     EXPECT_EQ(ReadPhoto(path).image.width, 24);
   }
-  WriteBytes(folder_.File("text.jpg"), "not a picture at all\n");
+  WriteBytes(folder_.File("text.jpg"), "not an image at all\n");
   EXPECT_THAT(FileErrorOf("text.jpg", [&] { (void)ReadPhoto(folder_.File("text.jpg")); }),
               HasSubstr("not an image that can be decoded"));
 }
@@ -120,24 +120,24 @@ TEST_F(PhotoFiles, AVideoIsDecodedOnceForAllItsFrames) {
     writer.Finish();
   }
   WriteImage(still, Blocks());
-  const PictureRequest requests[] = {{video, 7}, {still, 3}, {video, 2}, {video, 7}, {video, 0}};
-  const std::vector<PhotoFile> pictures = ReadPictures(requests);
-  ASSERT_EQ(pictures.size(), 5U);
+  const ImageRequest requests[] = {{video, 7}, {still, 3}, {video, 2}, {video, 7}, {video, 0}};
+  const std::vector<PhotoFile> images = ReadImages(requests);
+  ASSERT_EQ(images.size(), 5U);
   for (const auto& [i, t] : std::vector<std::pair<int, int>>{{0, 7}, {2, 2}, {3, 7}, {4, 0}}) {
-    EXPECT_NEAR(pictures[i].image.at(30, 20).red, 20 + 25 * t, 6) << i;
+    EXPECT_NEAR(images[i].image.at(30, 20).red, 20 + 25 * t, 6) << i;
   }
-  EXPECT_EQ(pictures[1].image, Blocks());
-  const PictureRequest beyond[] = {{video, 3}, {video, 9}};
-  EXPECT_THAT(FileErrorOf(video, [&] { (void)ReadPictures(beyond); }), HasSubstr("9 frames, requested frame 9"));
-  const PictureRequest none[] = {{folder_.File("nothing"), 0}};
-  FileErrorOf("nothing", [&] { (void)ReadPictures(none); });
+  EXPECT_EQ(images[1].image, Blocks());
+  const ImageRequest beyond[] = {{video, 3}, {video, 9}};
+  EXPECT_THAT(FileErrorOf(video, [&] { (void)ReadImages(beyond); }), HasSubstr("9 frames, requested frame 9"));
+  const ImageRequest none[] = {{folder_.File("nothing"), 0}};
+  FileErrorOf("nothing", [&] { (void)ReadImages(none); });
 }
 
 /// A speckled picture with a person, whose body is an upright oval with a coat two pixels wider, and a neighbour like
 /// it `shift` pixels to the right, hidden by the person where they overlap.
 struct TwoPeople {
   static constexpr int kSide = 96;
-  Image picture{kSide, kSide};
+  Image image{kSide, kSide};
   std::vector<uint8_t> parts = std::vector<uint8_t>(kSide * kSide, 0), person = parts, neighbour = parts;
   explicit TwoPeople(int shift) {
     const auto inside = [](int x, int y, double centre, double grown) {
@@ -159,7 +159,7 @@ struct TwoPeople {
                             person[i] != 0      ? 150
                             : neighbour[i] != 0 ? 40
                                                 : 120};
-        for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] = static_cast<uint8_t>(bgr[c] + speckle);
+        for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = static_cast<uint8_t>(bgr[c] + speckle);
       }
     }
   }
@@ -169,7 +169,7 @@ TEST(PersonSegmentation, TheNeighbourIsNotTaken) {
   const std::vector<uint8_t> everywhere(96 * 96, 1);
   for (const int shift : {34, 29, 22, 14}) {  // apart, touching, behind, mostly hidden
     const TwoPeople two(shift);
-    const PersonSegmentation segmentation = SegmentPerson(two.picture, everywhere, {}, two.parts);
+    const PersonSegmentation segmentation = SegmentPerson(two.image, everywhere, {}, two.parts);
     int mine = 0, found = 0, taken = 0;
     for (size_t i = 0; i < two.parts.size(); ++i) {
       mine += two.person[i];
@@ -200,9 +200,9 @@ TEST(PersonSegmentation, TheNeighbourIsNotTaken) {
   EXPECT_EQ(labels, alone.person);
 }
 
-TEST(PersonSegmentation, EndsAtThePicture) {
+TEST(PersonSegmentation, EndsAtTheImage) {
   const TwoPeople two(60);
-  Image window = two.picture;
+  Image window = two.image;
   std::vector<uint8_t> inside(96 * 96, 1);
   for (int y = 0; y < 96; ++y) {
     for (int x = 0; x < 96; ++x) {
@@ -232,13 +232,13 @@ TEST(PersonSegmentation, TransparencyCountsBeforeColours) {
   // A body too thin to learn its colours from.
   std::vector<uint8_t> thin(96 * 96, 0);
   for (int y = 20; y < 70; ++y) thin[y * 96 + 36] = thin[y * 96 + 37] = 2;
-  const PersonSegmentation bare = SegmentPerson(two.picture, everywhere, {}, thin);
+  const PersonSegmentation bare = SegmentPerson(two.image, everywhere, {}, thin);
   EXPECT_THAT(bare.note, HasSubstr("the bare body's"));
   for (size_t i = 0; i < thin.size(); ++i) ASSERT_EQ(bare.labels[i] != 0, thin[i] != 0) << i;
-  std::fill(two.picture.bgr.begin(), two.picture.bgr.end(), 90);
+  std::fill(two.image.bgr.begin(), two.image.bgr.end(), 90);
   std::vector<uint8_t> alpha;
   for (const uint8_t person : two.person) alpha.push_back(person != 0 ? 255 : 0);
-  const PersonSegmentation cut_out = SegmentPerson(two.picture, everywhere, alpha, two.parts);
+  const PersonSegmentation cut_out = SegmentPerson(two.image, everywhere, alpha, two.parts);
   EXPECT_THAT(cut_out.note, HasSubstr("transparency"));
   int wrong = 0;
   for (size_t i = 0; i < alpha.size(); ++i) wrong += (cut_out.labels[i] != 0) != (alpha[i] != 0);

@@ -18,31 +18,31 @@ namespace {
 /// A window of 3 × 2 pixels at (1, 1) of a picture of 6 × 4, and what networks predicted for it.
 struct Drawn {
   PersonWindow window;
-  MotionPicture picture;
+  MotionImage rendered;
   Drawn() {
-    window.width = 3, window.height = 2, window.picture_width = 6, window.picture_height = 4;
+    window.width = 3, window.height = 2, window.image_width = 6, window.image_height = 4;
     window.corner = {{1, 1}};
-    picture.width = 3, picture.height = 2;
-    picture.labels = {1, 2, 3, 0, 5, 6};
-    picture.alpha.assign(6, 1);
-    picture.image.assign(18, 0.5F);
-    picture.normals.assign(18, 0);
+    rendered.width = 3, rendered.height = 2;
+    rendered.labels = {1, 2, 3, 0, 5, 6};
+    rendered.alpha.assign(6, 1);
+    rendered.image.assign(18, 0.5F);
+    rendered.normals.assign(18, 0);
     for (int i = 0; i < 6; ++i) {
       const float angle = 0.2F * static_cast<float>(i);
-      picture.normals[i] = 0.8F * std::sin(angle);  // shortened, as uncertain foreground is
-      picture.normals[12 + i] = -0.8F * std::cos(angle);
+      rendered.normals[i] = 0.8F * std::sin(angle);  // shortened, as uncertain foreground is
+      rendered.normals[12 + i] = -0.8F * std::cos(angle);
     }
   }
 };
 
 TEST(RenderedDataset, AtTheNetworksSizeClassesStayAndNormalsBecomeUnitVectors) {
   const Drawn drawn;
-  const PersonFrame frame = SetFrameOf(drawn.picture, drawn.window, 0, Image(6, 4, {7, 8, 9}));
+  const PersonFrame frame = SetFrameOf(drawn.rendered, drawn.window, 0, Image(6, 4, {7, 8, 9}));
   EXPECT_EQ(frame.rgb, Image(6, 4, {7, 8, 9}));
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 6; ++x) {
       const bool inside = x >= 1 && x < 4 && y >= 1 && y < 3;
-      const int i = 3 * (y - 1) + x - 1, label = inside ? drawn.picture.labels[i] : 0;
+      const int i = 3 * (y - 1) + x - 1, label = inside ? drawn.rendered.labels[i] : 0;
       EXPECT_EQ(frame.labels.at(x, y), (Colour{uint8_t(label), uint8_t(label), uint8_t(label)})) << x << ", " << y;
       const Colour normal = frame.normals.at(x, y);
       if (label == 0) {
@@ -58,11 +58,11 @@ TEST(RenderedDataset, AtTheNetworksSizeClassesStayAndNormalsBecomeUnitVectors) {
 
 TEST(RenderedDataset, EnlargedEveryPixelTakesTheNearestClass) {
   const Drawn drawn;
-  const PersonFrame frame = SetFrameOf(drawn.picture, drawn.window, 0, Image(18, 12));
+  const PersonFrame frame = SetFrameOf(drawn.rendered, drawn.window, 0, Image(18, 12));
   for (int y = 0; y < 12; ++y) {
     for (int x = 0; x < 18; ++x) {
       const bool inside = x >= 3 && x < 12 && y >= 3 && y < 9;
-      const int label = inside ? drawn.picture.labels[3 * (y / 3 - 1) + x / 3 - 1] : 0;
+      const int label = inside ? drawn.rendered.labels[3 * (y / 3 - 1) + x / 3 - 1] : 0;
       EXPECT_EQ(frame.labels.at(x, y).red, label) << x << ", " << y;
       if (label == 0) continue;
       const Colour normal = frame.normals.at(x, y);
@@ -82,7 +82,7 @@ TEST(RenderedDataset, IsASinglePersonDatasetOnlyWhenFinished) {
   drawn.window.corner = {{1, 1}, {0, 0}};
   const std::string folder = EmptyFolder("rendered_dataset");
   RenderedDataset set(folder, track, 25, true, true, "animate");
-  set.Add(0, drawn.picture, drawn.window, Image(24, 16, {1, 2, 3}));
+  set.Add(0, drawn.rendered, drawn.window, Image(24, 16, {1, 2, 3}));
   EXPECT_THROW(SinglePersonDataset{folder}, std::runtime_error);
   set.Add(1, {}, drawn.window, Image(24, 16));  // no fit
   set.Finish();
@@ -93,10 +93,10 @@ TEST(RenderedDataset, IsASinglePersonDatasetOnlyWhenFinished) {
   EXPECT_EQ(read.Read(0).labels.at(6, 6).red, 1);
   EXPECT_EQ(read.Read(1).labels, Image(24, 16)) << "a frame without a fit is background";
 
-  drawn.picture.labels.clear();
-  drawn.picture.normals.clear();
+  drawn.rendered.labels.clear();
+  drawn.rendered.normals.clear();
   RenderedDataset bare(EmptyFolder("rendered_dataset_bare"), track, 25, false, false, "animate");
-  for (const int t : {0, 1}) bare.Add(t, drawn.picture, drawn.window, Image(24, 16));
+  for (const int t : {0, 1}) bare.Add(t, drawn.rendered, drawn.window, Image(24, 16));
   EXPECT_NO_THROW(bare.Finish());
 }
 

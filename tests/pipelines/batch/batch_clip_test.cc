@@ -111,10 +111,10 @@ TEST(ClipRecord, IsReadAsItWasWritten) {
   EXPECT_EQ(ToLine(ClipRecordFromText(ToLine(SampleRecord()), "clip.json")), ToLine(SampleRecord()));
   ClipRecord nothing;
   nothing.id = "b";
-  nothing.status = ClipStatus::kNothingToTrack;
+  nothing.status = ClipStatus::kNoPersonFound;
   nothing.reason = "b.json: nobody \"there\"";
   const ClipRecord read = ClipRecordFromText(ToLine(nothing), "clip.json");
-  EXPECT_EQ(read.status, ClipStatus::kNothingToTrack);
+  EXPECT_EQ(read.status, ClipStatus::kNoPersonFound);
   EXPECT_EQ(read.reason, nothing.reason);
   EXPECT_TRUE(std::isnan(read.reprojection_median_px));
 }
@@ -157,7 +157,7 @@ TEST(ClipTable, WorstComeFirstAndAReasonStaysInItsCell) {
   good.frames_by_status = {{"weak", 2}, {"interpolated", 3}, {"lost", 4}};
   const std::string table = ToCsv(
       {good, SampleRecord("bad", ClipStatus::kDone, 9), SampleRecord("nan", ClipStatus::kDone, NAN),
-       SampleRecord("empty", ClipStatus::kNothingToTrack, NAN), failed, SampleRecord("also", ClipStatus::kDone, 9)});
+       SampleRecord("empty", ClipStatus::kNoPersonFound, NAN), failed, SampleRecord("also", ClipStatus::kDone, 9)});
   EXPECT_EQ(table,
             "id,status,reprojection_p95_px,reprojection_median_px,frames,people,weak,interpolated,lost,seconds,reason\n"
             "failed,failed,,1.50,6,1,0,0,1,1.25,\"\"\"x\"\", y.json: no such file\"\n"
@@ -172,7 +172,7 @@ TEST(TrackBatchClip, LeavesNoFileOfAClipThatShowsNobody) {
   const ScratchFolder folder;
   fs::create_directories(folder / "batch");
   const ClipRecord record = TrackBatchClip(EmptyClip("e", folder), folder / "batch");
-  EXPECT_EQ(record.status, ClipStatus::kNothingToTrack);
+  EXPECT_EQ(record.status, ClipStatus::kNoPersonFound);
   EXPECT_NE(record.reason.find("no person in any of 1 frames"), std::string::npos) << record.reason;
   EXPECT_TRUE(fs::is_empty(folder / "batch"));
 }

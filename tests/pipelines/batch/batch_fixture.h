@@ -36,7 +36,7 @@ inline BatchClip BatchClipOf(const std::string& id, const SynthClipFiles& files)
   return clip;
 }
 
-/// A clip that can be read and shows nobody: joints without confidence.
+/// A readable clip without a person: joints without confidence.
 inline BatchClip EmptyClip(const std::string& id, const ScratchFolder& folder) {
   std::string joints;
   for (int k = 0; k < 17; ++k) joints += std::string(k > 0 ? "," : "") + "0,0,0";
@@ -53,8 +53,8 @@ inline BatchClip EmptyClip(const std::string& id, const ScratchFolder& folder) {
   return clip;
 }
 
-/// Every file below the folder by its name in it, but for times and memory: reports, records and the table are left
-/// out.
+/// Bytes of every file below the folder by relative path, except files with times and memory: reports, records and the
+/// table.
 inline std::map<std::string, std::string> ResultBytes(const std::string& folder) {
   std::map<std::string, std::string> bytes;
   for (const std::string& file : FilesBelow(folder)) {

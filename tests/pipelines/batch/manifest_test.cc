@@ -109,17 +109,17 @@ TEST(Shard, EveryClipBelongsToOneShardAndNoneIsLargerThanAnotherByTwo) {
   for (int shards = 1; shards <= 17; ++shards) {
     for (const int count : {0, 1, 5, 16, 17, 100}) {
       std::set<std::string> owned;
-      size_t least = 100, most = 0, all = 0;
+      size_t minimum = 100, maximum = 0, all = 0;
       for (int i = 0; i < shards; ++i) {
         const std::vector<ManifestClip> own = ShardOf(Clips(count), std::to_string(i) + "/" + std::to_string(shards));
         for (const ManifestClip& clip : own) owned.insert(clip.id);
         all += own.size();
-        least = std::min(least, own.size());
-        most = std::max(most, own.size());
+        minimum = std::min(minimum, own.size());
+        maximum = std::max(maximum, own.size());
       }
       EXPECT_EQ(owned.size(), static_cast<size_t>(count)) << count << " clips in " << shards << " shards";
       EXPECT_EQ(all, owned.size());
-      EXPECT_LE(most - least, 1u);
+      EXPECT_LE(maximum - minimum, 1u);
     }
   }
   EXPECT_EQ(ShardOf(Clips(8), "1/3").at(2).id, "7");

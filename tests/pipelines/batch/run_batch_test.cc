@@ -176,7 +176,7 @@ TEST_F(RunBatchTest, OneThatFailsStopsNoOtherAndIsNamedWithItsReason) {
   request_.clips[1].settings["detections"] = inputs / "absent.npz";
   request_.clips[2] = EmptyClip("clip2", inputs);
   for (const ClipStatus others : {ClipStatus::kDone, ClipStatus::kSkipped}) {
-    EXPECT_EQ(Run(), (Counts{{ClipStatus::kFailed, 1}, {ClipStatus::kNothingToTrack, 1}, {others, 2}}));
+    EXPECT_EQ(Run(), (Counts{{ClipStatus::kFailed, 1}, {ClipStatus::kNoPersonFound, 1}, {others, 2}}));
     EXPECT_THAT(told_.at("clip1").reason, HasSubstr("absent.npz: "));
     EXPECT_THAT(told_.at("clip2").reason, HasSubstr("no person in any of 1 frames"));
     EXPECT_THAT(ToText(report_), HasSubstr("1 failed, 1 nothing_to_track, 2 "));

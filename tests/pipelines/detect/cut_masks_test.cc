@@ -23,8 +23,8 @@ struct Scene {
     request.video = folder.File("pictures");
     std::filesystem::create_directories(request.video);
     detected.people.image_width = MaskedClip::kWidth, detected.people.image_height = MaskedClip::kHeight;
-    for (size_t t = 0; t < clip.pictures.size(); ++t) {
-      WriteImage(folder.File("pictures/" + std::to_string(1000 + t) + ".png"), clip.pictures[t]);
+    for (size_t t = 0; t < clip.images.size(); ++t) {
+      WriteImage(folder.File("pictures/" + std::to_string(1000 + t) + ".png"), clip.images[t]);
       detected.people.frames.emplace_back(1);
       detected.people.timestamps.push_back(double(t) / 30);
       detected.masks.push_back({LabelImage{0, 0, MaskedClip::kWidth, MaskedClip::kHeight, clip.CoarseMask(int(t))}});

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Dense keypoints of a clip by a detector that is scripted here: a person is a rectangle of one grey, and each shows
-/// one chart.
+/// Dense keypoints of a clip by a scripted detector: each person is a rectangle of one grey level and shows one chart.
 #include "pipelines/detect/detect_dense.h"
 
 #include <gmock/gmock.h>
@@ -32,11 +31,11 @@ struct Somebody {
 };
 
 /// Everybody by their grey, 10 times the part.
-std::vector<ChartDetection> FindRectangles(const Image& picture) {
+std::vector<ChartDetection> FindRectangles(const Image& image) {
   std::map<int, Somebody> found;
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const int grey = picture.at(x, y).red;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const int grey = image.at(x, y).red;
       if (grey == 0) continue;
       Somebody& s = found.try_emplace(grey, Somebody{grey / 10, x, y, 0, 0}).first->second;
       s.width = std::max(s.width, x + 1 - s.x);
@@ -147,7 +146,7 @@ PeopleSequence LandmarksOf(const std::vector<std::vector<Somebody>>& frames) {
 }
 
 TEST_F(DetectDenseClip, LandmarksSayWhoIsMeant) {
-  // Who is largest to the dense detector is the second to the landmarks; the two overlap.
+  // The largest person of the dense detector is the second of the landmarks; the two overlap.
   const Somebody large = {2, 5, 5, 50, 70}, small = {15, 45, 10, 20, 40};
   const Somebody unknown = {7, 80, 8, 15, 10};  // seen by the dense detector alone
   AddFrame({large, small});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clip with an ONNX network in place of BlazePose, from pictures to landmarks and tracks. The network is scripted:
-/// it sees two people, and the redder a picture is, the farther the small one has gone to the right.
+/// A clip with an ONNX network in place of BlazePose, from images to landmarks and tracks. The network is scripted: it
+/// detects two people, and the redder an image is, the farther the small one is to the right.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -158,7 +158,7 @@ TEST_F(OnnxClip, RunTracksEverybody) {
   request.track = Track();
   request.out = folder_ / "out";
   request.overlay = false;
-  request.least_seconds = 0;
+  request.min_seconds = 0;
   const TrackPeopleReport report = TrackPeopleClip(request);
   EXPECT_EQ(report.network, "net.onnx");
   ASSERT_EQ(report.people.size(), 2U);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// MediaPipe's own pipeline around our networks: one frame after the other, landmarks and regions smoothed by its One
-/// Euro filters. What it published for a clip must come out, but for the training of the network since. Skipped where
-/// the recording or the networks (./dev models) are missing.
+/// MediaPipe's pipeline with our networks: frame by frame, landmarks and regions smoothed by its One Euro filters. It
+/// must reproduce MediaPipe's published results of a clip, up to later training of the network. Skipped where the
+/// recording or the networks (./dev models) are missing.
 #include <gtest/gtest.h>
 
 #include <cmath>

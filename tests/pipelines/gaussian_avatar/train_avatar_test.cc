@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A synthetic person learned from a dataset and from a video, gone on with, and shown.
+// Training of an avatar of a synthetic person from a dataset and from a video, resuming, and rendering.
 #include "pipelines/gaussian_avatar/train_avatar.h"
 
 #include <gtest/gtest.h>
@@ -81,8 +81,8 @@ TEST(TrainAvatar, EndsWhereFramesHeldOutGainNothing) {
   request.train = {"0-1"}, request.steps = 20000;
   const TrainAvatarSummary summary = TrainAvatar(request);
   EXPECT_LT(summary.steps, 10000);
-  EXPECT_GT(summary.landing_step, summary.best_step);
-  EXPECT_GT(summary.steps, summary.landing_step);
+  EXPECT_GT(summary.cooldown_step, summary.best_step);
+  EXPECT_GT(summary.steps, summary.cooldown_step);
   EXPECT_EQ(summary.best_step % 250, 0);
   // The file has the person who was best, not the last.
   const AvatarTrainingState state = ReadAvatarCheckpoint(AvatarCheckpointPath(request.out)).state;
@@ -90,9 +90,9 @@ TEST(TrainAvatar, EndsWhereFramesHeldOutGainNothing) {
   EXPECT_TRUE(SameBytes(written.parameters, state.ResultBody().parameters));
   EXPECT_FALSE(SameBytes(written.parameters, state.body.parameters));
   const std::string report = ReadFileBytes(folder.File("run/report.json"));
-  EXPECT_NE(report.find("\"landing_step\": " + std::to_string(summary.landing_step)), std::string::npos) << report;
+  EXPECT_NE(report.find("\"cooldown_step\": " + std::to_string(summary.cooldown_step)), std::string::npos) << report;
   EXPECT_NE(ReadFileBytes(folder.File("run/metrics.csv")).find(",held_out,"), std::string::npos);
-  // What has ended has ended.
+  // Resuming a finished run does nothing.
   request.resume = true;
   EXPECT_EQ(TrainAvatar(request).steps, summary.steps);
 
@@ -128,12 +128,12 @@ TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {
   ASSERT_TRUE(shown.scores.has_value());
   EXPECT_EQ(shown.scores->frames, kFrames);
   EXPECT_GT(shown.scores->psnr_box_db, 16);
-  const cv::Mat picture = cv::imread(folder.File("pictures/000003.png"), cv::IMREAD_UNCHANGED);
-  ASSERT_EQ(picture.type(), CV_8UC4);
-  EXPECT_EQ(picture.cols, kSize);
+  const cv::Mat image = cv::imread(folder.File("pictures/000003.png"), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(image.type(), CV_8UC4);
+  EXPECT_EQ(image.cols, kSize);
   int inside = 0;
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x) inside += picture.at<cv::Vec4b>(y, x)[3] > 127 ? 1 : 0;
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) inside += image.at<cv::Vec4b>(y, x)[3] > 127 ? 1 : 0;
   }
   const SinglePersonDataset set(Scene().File("person"));
   const PersonFrame frame = set.Read(3);
@@ -170,7 +170,7 @@ TEST(TrainAvatar, LearnsADatasetsPersonAndShowsIt) {
   EXPECT_EQ(VideoReader(turned.out).info().num_frames, kFrames + 3);
 
   turned.set = folder.File("turned_set");
-  EXPECT_THROW(AnimateAvatar(turned), RequestError) << "the track beside the pictures would be another";
+  EXPECT_THROW(AnimateAvatar(turned), RequestError) << "the track beside the images would be another";
   EXPECT_FALSE(fs::exists(turned.set));
   turned.set.clear();
   turned.size = 0, turned.data = Scene().File("person");
@@ -196,10 +196,10 @@ TEST(ShownAvatar, DrawsInMemoryWhatTheFilesShow) {
   ShownAvatar shown(avatar, motion, 1, {});
   ASSERT_EQ(shown.num_frames(), kFrames);
   for (const int t : {7, 2}) {  // in any order
-    const cv::Mat picture = cv::imread(Concatenate(files.pictures, "/00000", t, ".png"), cv::IMREAD_UNCHANGED);
+    const cv::Mat image = cv::imread(Concatenate(files.pictures, "/00000", t, ".png"), cv::IMREAD_UNCHANGED);
     const std::vector<uint8_t> drawn = WithAlpha(shown.Draw(t), shown.width(), shown.height());
-    ASSERT_EQ(drawn.size(), picture.total() * picture.elemSize());
-    EXPECT_TRUE(std::equal(drawn.begin(), drawn.end(), picture.data)) << "frame " << t;
+    ASSERT_EQ(drawn.size(), image.total() * image.elemSize());
+    EXPECT_TRUE(std::equal(drawn.begin(), drawn.end(), image.data)) << "frame " << t;
   }
 
   // A person and a motion in memory, files all the same.

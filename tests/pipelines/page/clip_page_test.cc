@@ -42,7 +42,7 @@ ClipPageContent TwoFrames() {
   return content;
 }
 
-/// What stands in the page's <script> with this id.
+/// Content of the page's <script> with this id.
 std::string ScriptOf(const std::string& html, const std::string& id) {
   const size_t tag = html.find("<script id=\"" + id + "\"");
   EXPECT_NE(tag, std::string::npos) << id;

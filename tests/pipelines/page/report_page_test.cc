@@ -38,7 +38,7 @@ TEST(ReportPage, NothingIsFetchedFromElsewhere) {
   ReportPage page("x", "y");
   page.AddHeading("h");
   page.AddFigures({{"3 px", "error"}});
-  page.AddPicture("bytes", "image/png", "a picture");
+  page.AddImage("bytes", "image/png", "an image");
   page.AddVideo("overlay.mp4", "a video");
   page.AddCurve({0, 1}, {1, 2}, "frame", "error");
   EXPECT_THAT(page.ToHtml(), Not(HasSubstr("http")));

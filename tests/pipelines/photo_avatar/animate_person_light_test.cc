@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A grey person who was kept, in other light.
+/// A saved grey person under other light.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,22 +50,22 @@ class PersonInOtherLight : public ::testing::Test {
   /// Mean blue, green, red of the person's left and right half in the picture.
   std::array<std::array<double, 3>, 2> Halves(const std::string& light) {
     AnimatePerson(Request(light));
-    const Image picture = ReadImage(folder_ / "pictures/000000.png");
-    int first = picture.width, last = 0;
-    const auto is_person = [&](int x, int y) { return picture.pixel(x, y)[0] + picture.pixel(x, y)[2] > 0; };
-    for (int y = 0; y < picture.height; ++y) {
-      for (int x = 0; x < picture.width; ++x) {
+    const Image image = ReadImage(folder_ / "pictures/000000.png");
+    int first = image.width, last = 0;
+    const auto is_person = [&](int x, int y) { return image.pixel(x, y)[0] + image.pixel(x, y)[2] > 0; };
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
         if (is_person(x, y)) first = std::min(first, x), last = std::max(last, x);
       }
     }
     std::array<std::array<double, 3>, 2> sums{};
     std::array<int, 2> pixels{};
-    for (int y = 0; y < picture.height; ++y) {
+    for (int y = 0; y < image.height; ++y) {
       for (int x = first; x <= last; ++x) {
         if (!is_person(x, y)) continue;
         const size_t half = 2 * x < first + last ? 0 : 1;
         ++pixels[half];
-        for (size_t c = 0; c < 3; ++c) sums[half][c] += picture.pixel(x, y)[c];
+        for (size_t c = 0; c < 3; ++c) sums[half][c] += image.pixel(x, y)[c];
       }
     }
     for (size_t half = 0; half < 2; ++half) {

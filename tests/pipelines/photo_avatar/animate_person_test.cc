@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A real person's photo, moved. Skipped where the recording or the pose detector's networks (./dev models) are
-/// missing, but for the requests that are refused before either is needed.
+/// Animation of a real person's photo. Skipped where the recording or the pose detector's networks (./dev models) are
+/// missing, except for requests rejected before either is needed.
 #include "pipelines/photo_avatar/animate_person.h"
 
 #include <gmock/gmock.h>
@@ -95,8 +95,8 @@ TEST_F(RealPersonTest, HasATextureOfWhichEveryTexelSaysWhereItIsFrom) {
   const PhotoPersonReport& report = person_->report;
   EXPECT_GT(report.seen, 0.2);
   EXPECT_LT(report.seen, 0.5);
-  EXPECT_LT(report.spread, 0.1);
-  EXPECT_NEAR(report.seen + report.mirrored + report.behind + report.hair + report.around + report.spread, 1, 1e-9);
+  EXPECT_LT(report.smooth_fill, 0.1);
+  EXPECT_NEAR(report.seen + report.mirrored + report.behind + report.hair + report.limb_neighbour + report.smooth_fill, 1, 1e-9);
   ASSERT_EQ(report.photos.size(), 1U);
   EXPECT_GT(report.photos[0].rim_measured, 300);
 }
@@ -179,7 +179,7 @@ TEST_F(RealPersonTest, APhotoOfNobodySaysSo) {
   try {
     MakePhotoPerson(request);
     FAIL();
-  } catch (const NothingToTrack& error) {
+  } catch (const NoPersonFound& error) {
     EXPECT_THAT(error.what(), HasSubstr("nobody.png: nobody was found"));
   }
 }

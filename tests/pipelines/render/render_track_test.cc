@@ -46,7 +46,7 @@ TEST(RenderTrack, ASideViewOfAMovingCamerasTrackStandsInTheScene) {
   EXPECT_EQ(SheetOf(moving, RenderKind::kOverlay, 70), SheetOf(in_scene, RenderKind::kOverlay, 70));
 }
 
-TEST(RenderTrack, AMovingCamerasPicturesShowTheBodyWhereThatCameraSawIt) {
+TEST(RenderTrack, AMovingCamerasImagesShowTheBodyWhereThatCameraSawIt) {
   const Track moving = ShortTrack(6, SynthCameraMotion::kWalking);
   const Track seen = TrackInCameras(BuiltinBody(), moving);
   EXPECT_EQ(SheetOf(moving, RenderKind::kParts, {}), SheetOf(seen, RenderKind::kParts, {}));

@@ -31,7 +31,7 @@ class CompareResultsTest : public ::testing::Test {
  protected:
   std::string Path(const std::string& name) const { return folder_ / name; }
   /// FOLDER/000000.png, … one grey picture a value.
-  std::string Pictures(const std::string& folder, const std::vector<int>& values) const {
+  std::string Images(const std::string& folder, const std::vector<int>& values) const {
     fs::create_directories(Path(folder));
     for (size_t i = 0; i < values.size(); ++i) {
       char name[32];
@@ -46,8 +46,8 @@ class CompareResultsTest : public ::testing::Test {
 
 TEST_F(CompareResultsTest, FurtherMetricsSeeFramesInOrder) {
   CompareResultsRequest request;
-  request.truth = Pictures("truth", {10, 20, 30, 40, 50});
-  request.result = Pictures("result", {11, 21, 31, 41, 51});
+  request.truth = Images("truth", {10, 20, 30, 40, 50});
+  request.result = Images("result", {11, 21, 31, 41, 51});
   request.num_threads = 2;
   request.csv = Path("m.csv");
   FrameMetric change;
@@ -100,15 +100,14 @@ std::vector<int> FollowersOf(const std::string& truth, const std::string& result
 }
 
 TEST_F(CompareResultsTest, AFrameFollowsAnotherWhereItsNumberDoes) {
-  const std::string truth = Pictures("truth", {1, 2, 3, 4, 5, 6, 7}),
-                    result = Pictures("result", {1, 2, 3, 4, 5, 6, 7});
+  const std::string truth = Images("truth", {1, 2, 3, 4, 5, 6, 7}), result = Images("result", {1, 2, 3, 4, 5, 6, 7});
   EXPECT_EQ(FollowersOf(truth, result), (std::vector<int>{0, 1, 1, 1, 1, 1, 1}));
   fs::remove(Path("result") + "/000002.png");
   fs::remove(Path("result") + "/000003.png");
   EXPECT_EQ(FollowersOf(truth, result, true), (std::vector<int>{0, 1, 0, 1, 1})) << "frames 2 and 3 are not there";
   // Every second frame of a clip is no clip of gaps.
   for (const char* gone : {"/000001.png", "/000005.png"}) fs::remove(Path("result") + gone);
-  Pictures("result", {1});
+  Images("result", {1});
   WriteImage(Path("result") + "/000002.png", Grey(3));
   EXPECT_EQ(FollowersOf(truth, result, true), (std::vector<int>{0, 1, 1, 1}));
   for (const char* side : {"a", "b"}) {
@@ -132,13 +131,13 @@ TEST_F(CompareResultsTest, AFrameFollowsNoneAcrossACutOfItsClip) {
   std::vector<int> expected(info.num_frames, 1);
   expected[0] = expected[5] = 0;
   EXPECT_EQ(FollowersOf(Path("set"), Path("set")), expected);
-  EXPECT_EQ(FollowersOf(Path("set/images"), Path("set/images")), expected) << "the pictures of a set are of its clip";
+  EXPECT_EQ(FollowersOf(Path("set/images"), Path("set/images")), expected) << "the images of a set are of its clip";
 }
 
 TEST_F(CompareResultsTest, ACancelledComparisonWritesNothing) {
   CompareResultsRequest request;
-  request.truth = Pictures("truth", {10, 20});
-  request.result = Pictures("result", {11, 21});
+  request.truth = Images("truth", {10, 20});
+  request.result = Images("result", {11, 21});
   request.json = Path("m.json");
   PipelineCallbacks callbacks;
   std::vector<std::string> stages;

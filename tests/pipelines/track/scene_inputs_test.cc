@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a focal length that is not known is looked for.
+// Prior of an unknown focal length.
 #include "pipelines/track/scene_inputs.h"
 
 #include <gtest/gtest.h>

@@ -140,7 +140,7 @@ TEST(TrackClip, ACancelledOneLeavesNothingBehind) {
   EXPECT_EQ(folder.Entries(), std::vector<std::string>{"clip"});
 }
 
-/// Whether the plan for these joints, said to be of that convention, has straight knees.
+/// Returns true if the plan for these joints, declared to be of that convention, has straight knees.
 bool PlansStraightKnees(TrackRequest request, const std::string& convention, const ScratchFolder& folder) {
   KeypointSequence joints = KeypointsFromNpz(ReadNpz(request.detections), request.detections);
   joints.convention = convention;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everybody in a real video. Skipped where the recordings or the networks (./dev models) are missing.
+/// Tracking of everybody in a real video. Skipped where the recordings or the networks (./dev models) are missing.
 #include "pipelines/track/track_people_clip.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ class TrackPeopleClipOnRealVideo : public ::testing::Test {
     request.track.from_s = 0.5;
     request.track.to_s = 0.7;
     request.track.detector.blazepose.network = PoseNetworkSize::kFull;
-    request.least_seconds = 0.1;
+    request.min_seconds = 0.1;
     request.out = folder_ / "out";
     return request;
   }
@@ -49,7 +49,7 @@ class TrackPeopleClipOnRealVideo : public ::testing::Test {
   const ScratchFolder folder_;
 };
 
-TEST_F(TrackPeopleClipOnRealVideo, GivesEverybodyATrackInOneSpaceAndOnePicture) {
+TEST_F(TrackPeopleClipOnRealVideo, GivesEverybodyATrackInOneSpaceAndOneImage) {
   const TrackPeopleClipRequest request = TwoPeople();
   const TrackPeopleReport report = TrackPeopleClip(request);
   EXPECT_EQ(report.num_frames, 13);

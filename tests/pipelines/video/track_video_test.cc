@@ -17,7 +17,7 @@ Track TrackOf(int width, int height) {
   return track;
 }
 
-/// What TrackVideo shows at a time: the number of a frame, -1 for none.
+/// Index of TrackVideo's frame at a time, -1 for none.
 int ShownAt(TrackVideo& video, double time_s) {
   const Image* image = video.At(time_s);
   return image == nullptr ? -1 : NumberOf(*image);
@@ -61,7 +61,7 @@ TEST(TrackVideo, AFolderOfImagesHasTheTracksRate) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.File("frames"));
   for (int i = 0; i < 4; ++i) {
-    WriteImage(folder.File("frames/" + std::to_string(i) + ".png"), NumberedPicture(i));
+    WriteImage(folder.File("frames/" + std::to_string(i) + ".png"), NumberedImage(i));
   }
   TrackVideo video(folder.File("frames"), TrackOf(96, 64));
   EXPECT_EQ(ShownAt(video, 2.0 / 30), 2);

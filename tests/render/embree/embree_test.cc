@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visibility buffer against Embree's ray tracer, which shares no code and no idea with it.
+// The visibility buffer against Embree's ray tracer, which shares neither code nor method with it.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The masks are of a skirt in motion, whose cloth is finer, heavier and stiffer than the fit's.
+// Fits to masks of a skirt in motion, whose cloth is finer, heavier and stiffer than the fit's.
 #include "render/garment/clip_clothes.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class ClipClothesTest : public ::testing::Test {
  protected:
   /// Of the body alone, or in the skirt as it swings.
   [[nodiscard]] std::vector<LabelImage> Masks(bool skirt) const {
-    ClothWearer wearer(body_, track_.motion.betas, {});
+    ClothCollisionBody wearer(body_, track_.motion.betas, {});
     WearSkirt(kLength_m, kFullness, &wearer);
     ClothRunOptions options;
     options.up = SwungUp(track_, 0);
@@ -63,11 +63,11 @@ class ClipClothesTest : public ::testing::Test {
 TEST_F(ClipClothesTest, FindsTheSkirtOfSomeoneWhoMoves) {
   const std::vector<LabelImage> masks = Masks(true);
   const ClipClothes clothes = Fit(masks, 2);
-  ASSERT_GT(clothes.garment.length_m, 0) << clothes.unlike_close << " " << clothes.unlike_loose;
+  ASSERT_GT(clothes.garment.length_m, 0) << clothes.mask_error_tight << " " << clothes.mask_error_with_garment;
   EXPECT_NEAR(clothes.garment.waist_y_m - clothes.garment.length_m, body_.joint_template()(3, 1) - kLength_m, 0.04);
   EXPECT_NEAR(clothes.garment.fullness, kFullness, 0.17);
-  EXPECT_LT(clothes.unlike_loose, 0.05);
-  EXPECT_LT(clothes.unlike_loose, clothes.unlike_close);
+  EXPECT_LT(clothes.mask_error_with_garment, 0.05);
+  EXPECT_LT(clothes.mask_error_with_garment, clothes.mask_error_tight);
   EXPECT_EQ(clothes.frames, 2);
   EXPECT_EQ(clothes.found_in, 2);
 
@@ -75,7 +75,7 @@ TEST_F(ClipClothesTest, FindsTheSkirtOfSomeoneWhoMoves) {
   EXPECT_EQ(again.garment.length_m, clothes.garment.length_m);
   EXPECT_EQ(again.garment.fullness, clothes.garment.fullness);
   EXPECT_EQ(again.offsets_m, clothes.offsets_m);
-  EXPECT_EQ(again.unlike_loose, clothes.unlike_loose);
+  EXPECT_EQ(again.mask_error_with_garment, clothes.mask_error_with_garment);
 
   // Stored and cut anew it is the same garment, for this body alone.
   const Eigen::VectorXd betas = track_.motion.betas, others = Eigen::VectorXd::Constant(2, 1);

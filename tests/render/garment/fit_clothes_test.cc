@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The masks are of garments whose cloth is finer, heavier and stiffer than the fit's, at widths and lengths between
-/// those it tries.
+/// Fits to masks of garments with finer, heavier and stiffer cloth than the fit's, at widths and lengths between those
+/// it tries.
 #include "render/garment/fit_clothes.h"
 
 #include <gtest/gtest.h>
@@ -27,14 +27,15 @@ TEST_F(FitClothesTest, FindsASkirtsLengthAndWidth) {
        {std::tuple{0.55, 0.5, 0.0, 0.0}, {0.72, 0.38, 0.6, 0.4}, {0.45, 0.66, 2.5, 0.0}}) {
     const Track photo = StandingPhoto(turn);
     const FittedClothes fitted = FitClothes(body_, photo, MaskOfSkirt(body_, photo, length_m, fullness, swing));
-    ASSERT_GT(fitted.garment.length_m, 0) << length_m << ": " << fitted.unlike_close << " " << fitted.unlike_loose;
+    ASSERT_GT(fitted.garment.length_m, 0)
+        << length_m << ": " << fitted.mask_error_tight << " " << fitted.mask_error_with_garment;
     EXPECT_NEAR(fitted.swing_rad, swing, 0.26) << length_m;
-    // What is seen is where the hem is and the silhouette; the pinned ring may be higher or lower, and other cloth that
-    // is cut wider hangs alike.
+    // Only the hem's position and the silhouette are observed; the pinned ring may be higher or lower, and wider cuts
+    // of other cloth hang alike.
     EXPECT_NEAR(fitted.garment.waist_y_m - fitted.garment.length_m, body_.joint_template()(3, 1) - length_m, 0.06)
         << length_m;
-    EXPECT_LT(fitted.unlike_loose, 0.06);
-    EXPECT_LT(fitted.unlike_loose, fitted.unlike_close);
+    EXPECT_LT(fitted.mask_error_with_garment, 0.06);
+    EXPECT_LT(fitted.mask_error_with_garment, fitted.mask_error_tight);
     EXPECT_EQ(fitted.garment.spacing_m, FitClothesOptions().spacing_m);
   }
 }
@@ -46,7 +47,7 @@ TEST_F(FitClothesTest, FindsNoneOnABareBodyOrInWideTrousers) {
     const MatrixX3i& faces = body_.data().faces;
     const FittedClothes bare = FitClothes(body_, photo, MaskOf(vertices, faces, photo.camera));
     EXPECT_EQ(bare.garment.length_m, 0) << turn;
-    EXPECT_LT(bare.unlike_close, 0.03) << turn;
+    EXPECT_LT(bare.mask_error_tight, 0.03) << turn;
     MatrixX3d wide = vertices;
     const MatrixX3f normals = VertexNormals(vertices, faces);
     const std::vector<uint8_t> legs =

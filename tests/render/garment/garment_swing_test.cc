@@ -8,7 +8,7 @@
 namespace bodyloom::garment_swing_test {
 namespace {
 
-TEST(GarmentSwing, TurnsUpInThePictureOnly) {
+TEST(GarmentSwing, TurnsUpInTheImageOnly) {
   const Track photo = StandingPhoto(0);
   EXPECT_LT((SwungUp(photo, 0) - Eigen::Vector3d(0, -1, 0)).norm(), 1e-12);
   EXPECT_LT((SwungUp(photo, EIGEN_PI / 2) - Eigen::Vector3d(1, 0, 0)).norm(), 1e-12);

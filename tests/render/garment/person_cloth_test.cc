@@ -99,13 +99,13 @@ TEST(PersonCloth, OtherRunsFallElsewhere) {
   };
   const std::vector<Eigen::Vector3d> first = PersonCloth(*person.clothed, person.garment, moved).At(11);
   EXPECT_EQ(Furthest(last(0), first), 0);
-  for (int run = 1; run < kMostClothRuns; ++run) {
+  for (int run = 1; run < kMaxClothRuns; ++run) {
     const std::vector<Eigen::Vector3d> other = last(run);
     EXPECT_GT(Furthest(other, first), 1e-3) << run;
     EXPECT_LT(Furthest(other, first), 0.15) << run;
     EXPECT_EQ(Furthest(other, last(run)), 0) << run;
   }
-  EXPECT_THROW(last(kMostClothRuns), std::invalid_argument);
+  EXPECT_THROW(last(kMaxClothRuns), std::invalid_argument);
   EXPECT_THROW(last(-1), std::invalid_argument);
 }
 

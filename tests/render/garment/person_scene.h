@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The built-in body before a camera, and the mask of whatever is drawn there.
+/// The built-in body before a camera, and the mask of the drawn person.
 #pragma once
 
 #include "data_tools/body/builtin_body.h"
@@ -13,7 +13,7 @@ namespace bodyloom {
 
 inline Camera PersonCamera() { return MakePinhole(600, 800, 900); }
 
-/// V×3 in the camera's frame, facing it, turned by so much about its vertical, arms at 45 degrees.
+/// V×3 in the camera's frame, facing it, turned by `turn_rad` about the vertical, arms at 45 degrees.
 inline MatrixX3d StandingBefore(const BodyModel& body, double turn_rad) {
   BodyPose pose = PoseFromAxisAngle(body, Eigen::VectorXd::Zero(3 * body.num_joints()), {0, 0, 3});
   pose.rotations[0] = RotationFromAxisAngle({0, turn_rad, 0}) * RotationFromAxisAngle({EIGEN_PI, 0, 0});

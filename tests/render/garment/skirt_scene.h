@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The built-in body before a camera in a skirt, whose cloth is finer, heavier and stiffer than what fits it.
+/// The built-in body before a camera in a skirt of finer, heavier and stiffer cloth than the fit's.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@
 
 namespace bodyloom {
 
-/// A track of one frame: facing PersonCamera() but for the turn, arms down, legs apart.
+/// A track of one frame, facing PersonCamera() except for the turn, arms down, legs apart.
 inline Track StandingPhoto(double turn_rad) {
   Track photo;
   photo.camera = PersonCamera();
@@ -33,7 +33,7 @@ inline Track StandingPhoto(double turn_rad) {
 }
 
 /// Dresses the wearer in a skirt of this cut from the waist.
-inline void WearSkirt(double length_m, double fullness, ClothWearer* wearer) {
+inline void WearSkirt(double length_m, double fullness, ClothCollisionBody* wearer) {
   LooseGarmentOptions cut;
   cut.waist_y_m = wearer->rest_joints()(3, 1), cut.length_m = length_m, cut.fullness = fullness;
   cut.spacing_m = 0.025, cut.mass_kg_m2 = 0.4, cut.bend_compliance = 3;
@@ -43,7 +43,7 @@ inline void WearSkirt(double length_m, double fullness, ClothWearer* wearer) {
 /// The person's pixels in the photo, in such a skirt.
 inline LabelImage MaskOfSkirt(const BodyModel& body, const Track& photo, double length_m, double fullness,
                               double swing_rad) {
-  ClothWearer wearer(body, photo.motion.betas, {});
+  ClothCollisionBody wearer(body, photo.motion.betas, {});
   WearSkirt(length_m, fullness, &wearer);
   ClothRunOptions options;
   options.up = SwungUp(photo, swing_rad);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaussians on a garment, and the bones that carry them.
+// Gaussians on a garment, and the bones that move them.
 #include "render/gaussian_avatar/cloth_gaussians.h"
 
 #include <gtest/gtest.h>

@@ -31,8 +31,8 @@ TEST(GaussianBody, ScalesAreBroughtWithinTheirLimits) {
   ExpectScales(body, 3, {-6.5F + four, -6.5F, -7});
   ExpectScales(body, 4, {-6, -7, -4.9F});
   EXPECT_EQ(LimitScales({}, &body), 0);
-  EXPECT_THROW(LimitScales({.least_log = -3, .most_log = -4}, &body), std::invalid_argument);
-  EXPECT_THROW(LimitScales({.needle = 0.5F}, &body), std::invalid_argument);
+  EXPECT_THROW(LimitScales({.min_log = -3, .max_log = -4}, &body), std::invalid_argument);
+  EXPECT_THROW(LimitScales({.max_axis_ratio = 0.5F}, &body), std::invalid_argument);
 }
 
 TEST(GaussianBody, SaysWhatIsWrongWithIt) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Posed Gaussians against their twin and the posed body, and what degenerate numbers do.
+// Posed Gaussians against their twin and the posed body, and behaviour for degenerate values.
 #include "render/gaussian_avatar/pose_gaussians.h"
 
 #include <gtest/gtest.h>

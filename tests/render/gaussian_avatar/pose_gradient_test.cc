@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives through posing against automatic ones of the twin, which are checked against differences; then the whole
-// way from a picture to everything that can be learned.
+// Derivatives of posing against automatic ones of the twin, which are checked against differences; then the full
+// backward pass from an image to all trained parameters.
 #include "render/gaussian_avatar/pose_gradient.h"
 
 #include <gtest/gtest.h>
@@ -153,17 +153,17 @@ TEST(PoseGradient, ARowThatNothingReachesGivesNothing) {
   for (int c = 0; c < Body::kNumParameters; ++c) EXPECT_EQ(after.parameters(5, c), 0);
 }
 
-TEST(PoseGradient, TheWholeWayFromThePictureToTheBones) {
+TEST(PoseGradient, TheWholeWayFromTheImageToTheBones) {
   // Posing, projection, picture and back, along random directions of everything that can be learned.
   PersonScene scene(60, 5);
   const Camera camera = MakePinhole(72, 72, 80);
   const PixelBox window{0, 0, 72, 72};
   CameraGaussians posed;
   ScreenGaussians screen;
-  SplatPicture picture;
+  SplatImage image;
   scene.Pose(&posed);
   ProjectGaussians(posed, camera, {}, &screen);
-  picture.Draw(screen, window, {.stop_transmittance = 0});
+  image.Draw(screen, window, {.stop_transmittance = 0});
 
   const auto draw = [&](const auto& person) {
     using T = std::decay_t<decltype(person.light[0])>;
@@ -196,7 +196,7 @@ TEST(PoseGradient, TheWholeWayFromThePictureToTheBones) {
 
   SplatGradient splat_gradient;
   FloatColumns by_screen, by_posed;
-  splat_gradient.Compute(picture, screen, weights, 1, &by_screen);
+  splat_gradient.Compute(image, screen, weights, 1, &by_screen);
   ProjectGaussiansBackward(posed, screen, by_screen, camera, {}, &by_posed);
   const AvatarGradient gradient = Gradient(scene, by_posed);
 

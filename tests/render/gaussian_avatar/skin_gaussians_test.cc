@@ -8,7 +8,7 @@
 #include "render/gaussian_avatar/pose_gaussians.h"
 #include "render/raster/visibility_buffer.h"
 #include "render/splat/project_gaussians.h"
-#include "render/splat/splat_picture.h"
+#include "render/splat/splat_image.h"
 #include "tests/support/toy_body.h"
 #include "tests/support/toy_poses.h"
 
@@ -31,8 +31,8 @@ TEST(SkinGaussians, CoverThePosedBodyAndNothingElse) {
   PoseGaussians(body, model.data().faces, frame, {}, &posed);
   ScreenGaussians screen;
   ProjectGaussians(posed, camera, {}, &screen);
-  SplatPicture picture;
-  picture.Draw(screen, {0, 0, 200, 200});
+  SplatImage image;
+  image.Draw(screen, {0, 0, 200, 200});
   VisibilityBuffer buffer;
   buffer.Render(PoseVertices(model, betas, pose), model.data().faces, camera);
   int inside = 0, covered = 0, spilt = 0;
@@ -46,12 +46,12 @@ TEST(SkinGaussians, CoverThePosedBodyAndNothingElse) {
   };
   for (int y = 0; y < 200; ++y) {
     for (int x = 0; x < 200; ++x) {
-      const float alpha = picture.plane(SplatPicture::kAlpha)[picture.window().IndexOf(x, y)];
+      const float alpha = image.plane(SplatImage::kAlpha)[image.window().IndexOf(x, y)];
       if (buffer.FaceAt(x, y) >= 0) {
         ++inside;
         covered += static_cast<int>(alpha > 0.9F);
         if (alpha > 0.9F) {  // evenly lit grey
-          ASSERT_NEAR(picture.plane(SplatPicture::kRed)[picture.window().IndexOf(x, y)], 0.4 * alpha, 1e-3);
+          ASSERT_NEAR(image.plane(SplatImage::kRed)[image.window().IndexOf(x, y)], 0.4 * alpha, 1e-3);
         }
       } else {
         spilt += static_cast<int>(alpha > 0.5F && !near_body(x, y));

@@ -21,7 +21,7 @@ TEST(PersonLayers, TheBoxIsAroundWhatIsCovered) {
     ++visited;
     ASSERT_EQ(i, static_cast<size_t>(y - layers.y) * layers.width + (x - layers.x));
   });
-  EXPECT_EQ(visited, 37 * 50) << "of the box what lies in the picture";
+  EXPECT_EQ(visited, 37 * 50) << "of the box what lies in the image";
 }
 
 }  // namespace

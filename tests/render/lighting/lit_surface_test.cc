@@ -42,9 +42,9 @@ TEST(LitSurface, ShadesAsTheClosedFormOfASphere) {
   LitSurface surface(body, false, 1);
   surface.Look(Ahead(mesh.vertices), camera);
   const ShLighting light = SomeLight();
-  Image picture(kSide, kSide, Colour{100, 140, 180});
+  Image image(kSide, kSide, Colour{100, 140, 180});
   const std::vector<uint8_t> coverage(size_t{kSide} * kSide, 255);
-  surface.Light(light, {}, coverage, &picture);
+  surface.Light(light, {}, coverage, &image);
   int compared = 0;
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -53,7 +53,7 @@ TEST(LitSurface, ShadesAsTheClosedFormOfASphere) {
       const double a = ray.squaredNorm() + 1, root = 16 - a * 15;
       if (root < 0.3) {
         if (root < -0.5) {
-          EXPECT_EQ(picture.pixel(x, y)[0], 180) << "not the sphere: stays";
+          EXPECT_EQ(image.pixel(x, y)[0], 180) << "not the sphere: stays";
         }
         continue;
       }
@@ -63,7 +63,7 @@ TEST(LitSurface, ShadesAsTheClosedFormOfASphere) {
       for (int c = 0; c < 3; ++c) {
         const double expected =
             255 * EncodePixel(DecodePixel(even[c] / 255, PixelEncoding::kSrgb) * shading[2 - c], PixelEncoding::kSrgb);
-        EXPECT_NEAR(picture.pixel(x, y)[c], expected, 1.5) << x << " " << y;
+        EXPECT_NEAR(image.pixel(x, y)[c], expected, 1.5) << x << " " << y;
       }
       ++compared;
     }
@@ -80,19 +80,19 @@ TEST(LitSurface, LightTakenAwayIsGivenBack) {
   LitSurface surface(body, false, 2);
   surface.Look(vertices, camera);
   const Image photo(kSide, kSide, Colour{120, 90, 60});
-  Image picture = photo;
-  const ShadingLimits limits{.least = 0.35, .most = 2};
-  surface.Unlight(SomeLight(), limits, &picture);
+  Image image = photo;
+  const ShadingLimits limits{.minimum = 0.35, .maximum = 2};
+  surface.Unlight(SomeLight(), limits, &image);
   int changed = 0;
-  for (size_t i = 0; i < photo.bgr.size(); ++i) changed += std::abs(photo.bgr[i] - picture.bgr[i]) > 5 ? 1 : 0;
+  for (size_t i = 0; i < photo.bgr.size(); ++i) changed += std::abs(photo.bgr[i] - image.bgr[i]) > 5 ? 1 : 0;
   EXPECT_GT(changed, 1000);
   // Only what the body covers: a drawing of whole pixels.
   std::vector<uint8_t> coverage(size_t{kSide} * kSide, 0);
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) coverage[size_t(y) * kSide + x] = surface.NormalAt(x, y) != nullptr ? 255 : 0;
   }
-  surface.Light(SomeLight(), limits, coverage, &picture);
-  for (size_t i = 0; i < photo.bgr.size(); ++i) ASSERT_NEAR(photo.bgr[i], picture.bgr[i], 1) << i;
+  surface.Light(SomeLight(), limits, coverage, &image);
+  for (size_t i = 0; i < photo.bgr.size(); ++i) ASSERT_NEAR(photo.bgr[i], image.bgr[i], 1) << i;
 }
 
 TEST(LitSurface, TheOutlineIsShadedAsWhatIsBesideIt) {
@@ -101,7 +101,7 @@ TEST(LitSurface, TheOutlineIsShadedAsWhatIsBesideIt) {
   const Camera camera = MakePinhole(kSide, kSide, 1.4 * kSide);
   LitSurface surface(body, false, 1);
   surface.Look(Ahead(mesh.vertices), camera);
-  Image picture(kSide, kSide);
+  Image image(kSide, kSide);
   std::vector<uint8_t> coverage(size_t{kSide} * kSide, 0);
   for (int y = 1; y + 1 < kSide; ++y) {
     for (int x = 1; x + 1 < kSide; ++x) {
@@ -109,19 +109,19 @@ TEST(LitSurface, TheOutlineIsShadedAsWhatIsBesideIt) {
       const bool beside = surface.NormalAt(x - 1, y) != nullptr || surface.NormalAt(x + 1, y) != nullptr;
       coverage[size_t(y) * kSide + x] = inside ? 255 : (beside ? 128 : 0);
       for (int c = 0; c < 3; ++c) {
-        picture.pixel(x, y)[c] = static_cast<uint8_t>(200 * coverage[size_t(y) * kSide + x] / 255);
+        image.pixel(x, y)[c] = static_cast<uint8_t>(200 * coverage[size_t(y) * kSide + x] / 255);
       }
     }
   }
-  surface.Light(AmbientLight(Vector3d::Constant(0.25)), {}, coverage, &picture);
+  surface.Light(AmbientLight(Vector3d::Constant(0.25)), {}, coverage, &image);
   const double dark = 255 * EncodePixel(0.25 * DecodePixel(200 / 255.0, PixelEncoding::kSrgb), PixelEncoding::kSrgb);
   int rim = 0;
   for (size_t i = 0; i < coverage.size(); ++i) {
     if (coverage[i] == 0) {
-      EXPECT_EQ(picture.bgr[3 * i], 0);
+      EXPECT_EQ(image.bgr[3 * i], 0);
       continue;
     }
-    EXPECT_NEAR(picture.bgr[3 * i], dark * coverage[i] / 255, 1.5);
+    EXPECT_NEAR(image.bgr[3 * i], dark * coverage[i] / 255, 1.5);
     rim += coverage[i] == 128 ? 1 : 0;
   }
   EXPECT_GT(rim, 50);
@@ -149,30 +149,30 @@ TEST(LitSurface, ShadingIsCutOff) {
   const BodyModel body = BodyOf(mesh.vertices, mesh.faces);
   LitSurface surface(body, false, 1);
   surface.Look(Ahead(mesh.vertices), MakePinhole(kSide, kSide, 1.4 * kSide));
-  Image picture(kSide, kSide, Colour{100, 100, 100});
+  Image image(kSide, kSide, Colour{100, 100, 100});
   const std::vector<uint8_t> coverage(size_t{kSide} * kSide, 255);
-  surface.Light(AmbientLight(Vector3d::Constant(1e-6)), {.least = 0.5, .most = 1}, coverage, &picture);
+  surface.Light(AmbientLight(Vector3d::Constant(1e-6)), {.minimum = 0.5, .maximum = 1}, coverage, &image);
   const double half = 255 * EncodePixel(0.5 * DecodePixel(100 / 255.0, PixelEncoding::kSrgb), PixelEncoding::kSrgb);
-  EXPECT_NEAR(picture.pixel(kSide / 2, kSide / 2)[0], half, 1);
+  EXPECT_NEAR(image.pixel(kSide / 2, kSide / 2)[0], half, 1);
 }
 
 TEST(LitSurface, IsTheSameForAnyThreadsAndRefusesOtherSizes) {
   const TestMesh mesh = UnitSphere(5);
   const BodyModel body = BodyOf(mesh.vertices, mesh.faces);
-  std::vector<Image> pictures;
+  std::vector<Image> images;
   const std::vector<uint8_t> coverage(size_t{kSide} * kSide, 255);
   for (const int threads : {1, 2, 5}) {
     LitSurface surface(body, true, threads);
     surface.Look(Ahead(mesh.vertices), MakePinhole(kSide, kSide, kSide));
-    pictures.emplace_back(kSide, kSide, Colour{90, 120, 150});
-    surface.Light(SomeLight(), {}, coverage, &pictures.back());
-    EXPECT_EQ(pictures.back().bgr, pictures.front().bgr) << threads;
+    images.emplace_back(kSide, kSide, Colour{90, 120, 150});
+    surface.Light(SomeLight(), {}, coverage, &images.back());
+    EXPECT_EQ(images.back().bgr, images.front().bgr) << threads;
     Image small(kSide, kSide - 1);
     EXPECT_THROW(surface.Light(SomeLight(), {}, coverage, &small), std::invalid_argument);
     EXPECT_THROW(surface.Unlight(SomeLight(), {}, &small), std::invalid_argument);
-    EXPECT_THROW(surface.Light(SomeLight(), {}, std::vector<uint8_t>(3), &pictures.back()), std::invalid_argument);
-    EXPECT_THROW(surface.Unlight(SomeLight(), {.least = 0}, &pictures.back()), std::invalid_argument);
-    EXPECT_THROW(surface.Unlight(SomeLight(), {.least = 2, .most = 1}, &pictures.back()), std::invalid_argument);
+    EXPECT_THROW(surface.Light(SomeLight(), {}, std::vector<uint8_t>(3), &images.back()), std::invalid_argument);
+    EXPECT_THROW(surface.Unlight(SomeLight(), {.minimum = 0}, &images.back()), std::invalid_argument);
+    EXPECT_THROW(surface.Unlight(SomeLight(), {.minimum = 2, .maximum = 1}, &images.back()), std::invalid_argument);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a picture in one light to a picture in another, with both known: a body in two colours, rendered with exact
-// clamped cosines, its light estimated, then relit.
+// Relights an image from one known light to another: a body in two colours, rendered with exact clamped cosines, its
+// light estimated, then relit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -92,7 +92,7 @@ double Psnr(const std::vector<float>& a, const std::vector<float>& b, const Scen
   return -10 * std::log10(sum / count);
 }
 
-TEST(RelightPerson, ThePictureInOtherLightIsWhatOtherLightWouldShow) {
+TEST(RelightPerson, TheImageInOtherLightIsWhatOtherLightWouldShow) {
   const Scene scene = SeeBody();
   const Light before{0.4, Vector3d(0.7, -0.5, -0.5).normalized(), 0.6};
   const Light after{0.3, Vector3d(-0.8, -0.4, -0.4).normalized(), 0.8};

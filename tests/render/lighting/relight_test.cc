@@ -96,38 +96,38 @@ TEST(ShLighting, EncodingsGoThereAndBack) {
   EXPECT_EQ(DecodePixel(7, PixelEncoding::kSrgb), 1);
 }
 
-struct Picture {
+struct Lit {
   std::vector<float> normals, alpha, image;
 };
 
 /// Texture times shading, normals and colours multiplied by alpha.
-Picture LambertPicture(const ShLighting& lighting, PixelEncoding encoding) {
+Lit LambertImage(const ShLighting& lighting, PixelEncoding encoding) {
   const std::vector<Vector3d> directions = Directions(400);
   const size_t area = directions.size();
-  Picture picture{std::vector<float>(3 * area), std::vector<float>(area), std::vector<float>(3 * area)};
+  Lit rendered{std::vector<float>(3 * area), std::vector<float>(area), std::vector<float>(3 * area)};
   for (size_t i = 0; i < area; ++i) {
     const float alpha = i % 3 == 0 ? 0.5F : 1.0F;
-    picture.alpha[i] = alpha;
+    rendered.alpha[i] = alpha;
     const Vector3d shading = Shading(lighting, directions[i]);
     for (int c = 0; c < 3; ++c) {
-      picture.normals[area * c + i] = alpha * float(directions[i][c]);
+      rendered.normals[area * c + i] = alpha * float(directions[i][c]);
       const double albedo = 0.1 + 0.4 * double((i * 7 + c * 5) % 11) / 11;
-      picture.image[area * c + i] = alpha * float(EncodePixel(albedo * shading[c], encoding));
+      rendered.image[area * c + i] = alpha * float(EncodePixel(albedo * shading[c], encoding));
     }
   }
-  return picture;
+  return rendered;
 }
 
 TEST(Relight, TurnsOneLightIntoAnotherWhateverTheTexture) {
   const ShLighting old_light = AmbientLight({0.5, 0.5, 0.5}) + DirectionalLight({1, 0, -1}, {0.5, 0.5, 0.5});
   const ShLighting new_light = AmbientLight({0.4, 0.3, 0.3}) + DirectionalLight({-1, -1, 0}, {0.6, 0.5, 0.2});
   for (const PixelEncoding encoding : {PixelEncoding::kSrgb, PixelEncoding::kLinear}) {
-    Picture picture = LambertPicture(old_light, encoding);
-    const Picture truth = LambertPicture(new_light, encoding);
+    Lit rendered = LambertImage(old_light, encoding);
+    const Lit truth = LambertImage(new_light, encoding);
     RelightOptions options;
     options.encoding = encoding;
-    Relight(old_light, new_light, picture.normals, picture.alpha, options, picture.image);
-    for (size_t i = 0; i < picture.image.size(); ++i) ASSERT_NEAR(picture.image[i], truth.image[i], 2e-5) << i;
+    Relight(old_light, new_light, rendered.normals, rendered.alpha, options, rendered.image);
+    for (size_t i = 0; i < rendered.image.size(); ++i) ASSERT_NEAR(rendered.image[i], truth.image[i], 2e-5) << i;
   }
 }
 

@@ -18,7 +18,7 @@ constexpr Colour kSkinColour{200, 160, 140}, kShirt{30, 40, 160};
 
 /// A trunk from column 0 to 29, a face in the first rows; the fitted forearm is columns 30 to 34.
 struct Scene {
-  Scene() : picture(kWidth, kHeight, kShirt) {
+  Scene() : image(kWidth, kHeight, kShirt) {
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         const bool arm = x >= 30 && x < 35, face = y < 6;
@@ -31,14 +31,14 @@ struct Scene {
     mask.assign(parts.size(), 1);
   }
   void Paint(int x, int y, const Colour& colour) {
-    uint8_t* p = picture.pixel(x, y);
+    uint8_t* p = image.pixel(x, y);
     p[0] = colour.blue, p[1] = colour.green, p[2] = colour.red;
   }
   [[nodiscard]] std::vector<uint8_t> Kept(int reach_px) const {
-    return WithoutLimbLeaks(picture, mask, labels, parts, reach_px);
+    return WithoutLimbLeaks(image, mask, labels, parts, reach_px);
   }
   static size_t At(int x, int y) { return static_cast<size_t>(y) * kWidth + x; }
-  Image picture;
+  Image image;
   std::vector<uint8_t> mask, labels, parts;
 };
 

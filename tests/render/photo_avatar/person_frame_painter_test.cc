@@ -14,17 +14,17 @@ namespace {
 
 DrawnPerson TwoPixels() {
   DrawnPerson person = {Image(2, 1), {0, 51}};  // a fifth
-  person.picture.pixel(1, 0)[0] = 10, person.picture.pixel(1, 0)[1] = 51, person.picture.pixel(1, 0)[2] = 0;
+  person.image.pixel(1, 0)[0] = 10, person.image.pixel(1, 0)[1] = 51, person.image.pixel(1, 0)[2] = 0;
   return person;
 }
 
-TEST(DrawnPerson, LiesOverAPicture) {
-  Image picture(2, 1, Colour{100, 200, 250});
-  const Image before = picture;
-  LayOver(TwoPixels(), &picture);
+TEST(DrawnPerson, LiesOverAImage) {
+  Image image(2, 1, Colour{100, 200, 250});
+  const Image before = image;
+  LayOver(TwoPixels(), &image);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_EQ(picture.pixel(0, 0)[c], before.pixel(0, 0)[c]) << "nobody there";
-    EXPECT_NEAR(picture.pixel(1, 0)[c], TwoPixels().picture.pixel(1, 0)[c] + 0.8 * before.pixel(1, 0)[c], 0.5);
+    EXPECT_EQ(image.pixel(0, 0)[c], before.pixel(0, 0)[c]) << "nobody there";
+    EXPECT_NEAR(image.pixel(1, 0)[c], TwoPixels().image.pixel(1, 0)[c] + 0.8 * before.pixel(1, 0)[c], 0.5);
   }
   Image other(1, 1);
   EXPECT_THROW(LayOver(TwoPixels(), &other), std::invalid_argument);
@@ -46,7 +46,7 @@ TEST(PersonFramePainter, AreTheSameForAnyNumberDrawnAtOnce) {
   const std::vector<DrawnPerson> together = three.Draw(poses);
   for (int t = 0; t < 3; ++t) {
     const DrawnPerson alone = one.Draw({&poses[t], 1})[0];
-    EXPECT_EQ(alone.picture.bgr, together[t].picture.bgr) << t;
+    EXPECT_EQ(alone.image.bgr, together[t].image.bgr) << t;
     EXPECT_EQ(alone.coverage, together[t].coverage) << t;
     int covered = 0;
     for (const uint8_t share : alone.coverage) covered += share > 0 ? 1 : 0;

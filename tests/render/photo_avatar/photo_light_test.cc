@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A body in a light that is known, photographed by the renderer itself.
+/// A body in known light, photographed by the renderer itself.
 #include "render/photo_avatar/photo_person_builder.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ constexpr int kSide = 240;
 
 /// Bright above, dark below.
 struct LitPhoto {
-  explicit LitPhoto(const ShLighting& light) : surface(BuiltinBody(), false, 2), picture(kSide, kSide) {
+  explicit LitPhoto(const ShLighting& light) : surface(BuiltinBody(), false, 2), image(kSide, kSide) {
     const BodyModel& body = BuiltinBody();
     Eigen::VectorXd pose = Eigen::VectorXd::Zero(3 * body.num_joints());
     pose[0] = M_PI;
@@ -40,17 +40,17 @@ struct LitPhoto {
         labels.push_back(static_cast<uint8_t>(n == nullptr ? PersonLabel::kBackground
                                                            : (below ? PersonLabel::kBottom : PersonLabel::kTop)));
         if (n == nullptr) continue;
-        for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] = below ? 60 : 150;
+        for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = below ? 60 : 150;
         sum += Shading(light, Vector3d(n[0], n[1], n[2]))[0];
         ++pixels;
       }
     }
     mean = sum / pixels;
-    even = picture;
-    surface.Light(light, {}, coverage, &picture);
+    even = image;
+    surface.Light(light, {}, coverage, &image);
   }
   LitSurface surface;
-  Image picture, even;
+  Image image, even;
   std::vector<uint8_t> labels;
   double mean = 0;  ///< of the light's shading over the person
 };
@@ -61,9 +61,9 @@ ShLighting FromTheLeft() {
 
 TEST(LightOfPhoto, IsTheLightThatWasThere) {
   const LitPhoto photo(FromTheLeft());
-  const PhotoLight found = LightOfPhoto(photo.picture, photo.labels, photo.surface);
+  const PhotoLight found = LightOfPhoto(photo.image, photo.labels, photo.surface);
   ASSERT_TRUE(found.fit.IsUsable());
-  double worst = 0, least = 10, most = 0;
+  double worst = 0, minimum = 10, maximum = 0;
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       const float* n = photo.surface.NormalAt(x, y);
@@ -71,11 +71,11 @@ TEST(LightOfPhoto, IsTheLightThatWasThere) {
       const Vector3d normal(n[0], n[1], n[2]);
       const double truth = Shading(FromTheLeft(), normal)[0] / photo.mean;
       worst = std::max(worst, std::abs(found.coefficients.dot(ShBasis(normal)) - truth));
-      least = std::min(least, truth), most = std::max(most, truth);
+      minimum = std::min(minimum, truth), maximum = std::max(maximum, truth);
     }
   }
-  EXPECT_GT(most - least, 0.6) << "or there is nothing to find";
-  EXPECT_LT(worst, (most - least) / 4) << "what the ridge holds at even light";
+  EXPECT_GT(maximum - minimum, 0.6) << "or there is nothing to find";
+  EXPECT_LT(worst, (maximum - minimum) / 4) << "what the ridge holds at even light";
 }
 
 TEST(LightOfPhoto, TakenAwayLeavesEvenLight) {
@@ -89,20 +89,20 @@ TEST(LightOfPhoto, TakenAwayLeavesEvenLight) {
       const double expected =
           255 * EncodePixel(photo.mean * DecodePixel(photo.even.bgr[3 * i] / 255.0, PixelEncoding::kSrgb),
                             PixelEncoding::kSrgb);
-      sum += std::abs(photo.picture.bgr[3 * i] - expected);
+      sum += std::abs(photo.image.bgr[3 * i] - expected);
       ++pixels;
     }
     return sum / pixels;
   };
   const double before = error();
-  const PhotoLight found = LightOfPhoto(photo.picture, photo.labels, photo.surface);
-  photo.surface.Unlight(GreyLight(found.coefficients), kPhotoShading, &photo.picture);
+  const PhotoLight found = LightOfPhoto(photo.image, photo.labels, photo.surface);
+  photo.surface.Unlight(GreyLight(found.coefficients), kPhotoShading, &photo.image);
   EXPECT_LT(error(), before / 4) << before;
 }
 
 TEST(LightOfPhoto, DarkTrousersAreNoShade) {
   const LitPhoto photo(AmbientLight(Vector3d::Constant(1)));
-  const PhotoLight found = LightOfPhoto(photo.picture, photo.labels, photo.surface);
+  const PhotoLight found = LightOfPhoto(photo.image, photo.labels, photo.surface);
   for (int y = 0; y < kSide; y += 3) {
     for (int x = 0; x < kSide; x += 3) {
       const float* n = photo.surface.NormalAt(x, y);
@@ -115,14 +115,14 @@ TEST(LightOfPhoto, DarkTrousersAreNoShade) {
 TEST(LightOfPhoto, IsEvenWhereItCannotBeFound) {
   LitPhoto photo(FromTheLeft());
   std::vector<uint8_t> nobody(photo.labels.size(), 0);
-  const PhotoLight none = LightOfPhoto(photo.picture, nobody, photo.surface);
+  const PhotoLight none = LightOfPhoto(photo.image, nobody, photo.surface);
   EXPECT_FALSE(none.fit.IsUsable());
   EXPECT_EQ(none.coefficients, EvenLight());
   const PhotoLight dark = LightOfPhoto(Image(kSide, kSide), photo.labels, photo.surface);
   EXPECT_FALSE(dark.fit.IsUsable());
   EXPECT_EQ(dark.coefficients, EvenLight());
   nobody.pop_back();
-  EXPECT_THROW(LightOfPhoto(photo.picture, nobody, photo.surface), std::invalid_argument);
+  EXPECT_THROW(LightOfPhoto(photo.image, nobody, photo.surface), std::invalid_argument);
 }
 
 }  // namespace

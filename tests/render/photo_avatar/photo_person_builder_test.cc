@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A bare body of two colours, photographed by the renderer itself: the person made from it is that body again.
+/// A bare body of two colours, photographed by the renderer itself: the person made from the photos must equal that
+/// body.
 #include "render/photo_avatar/photo_person_builder.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +30,7 @@ constexpr int kSide = 320;
 constexpr int kBlue = 60, kGreen = 120, kRed = 200;
 
 /// At rest before the camera, turned about the vertical.
-Track BodyInPicture(double yaw) {
+Track BodyInImage(double yaw) {
   Track track = FramesInOrder(ShortTrack(), std::array{0});
   track.joints.clear(), track.coco17.clear();
   track.camera = Camera();
@@ -55,11 +56,10 @@ FittedPhoto Photo(double yaw) {
   }
   FittedPhoto photo;
   photo.name = "photo.png";
-  photo.picture = Image(kSide, kSide);
-  photo.track = BodyInPicture(yaw);
+  photo.image = Image(kSide, kSide);
+  photo.track = BodyInImage(yaw);
   std::vector<uint8_t> coverage(size_t{kSide} * kSide, 0);
-  PersonPainter(plain, 1).Draw(TrackVertices(*plain.body, photo.track, 0), photo.track.camera, &photo.picture,
-                               &coverage);
+  PersonPainter(plain, 1).Draw(TrackVertices(*plain.body, photo.track, 0), photo.track.camera, &photo.image, &coverage);
   photo.mask.width = photo.mask.height = kSide;
   for (const uint8_t covered : coverage) photo.mask.labels.push_back(covered >= 128 ? 1 : 0);
   return photo;
@@ -102,8 +102,8 @@ TEST(PhotoPersonBuilder, ASecondPhotoFromBehindShowsTheRest) {
   EXPECT_GT(one.report.seen, 0.15);
   EXPECT_GT(two.report.seen, one.report.seen + 0.1);
   EXPECT_EQ(two.tracks.size(), 2U);
-  EXPECT_NEAR(two.report.seen + two.report.mirrored + two.report.behind + two.report.hair + two.report.around +
-                  two.report.spread,
+  EXPECT_NEAR(two.report.seen + two.report.mirrored + two.report.behind + two.report.hair + two.report.limb_neighbour +
+                  two.report.smooth_fill,
               1, 1e-9);
 }
 
@@ -126,7 +126,7 @@ TEST(PhotoPersonBuilder, RefusesWhatShowsTooLittle) {
   try {
     builder.Add(hidden);
     FAIL() << "a mask of nobody";
-  } catch (const NothingToTrack& error) {
+  } catch (const NoPersonFound& error) {
     EXPECT_THAT(error.what(), HasSubstr("photo.png: shows too little of the person"));
   }
   builder.Add(Photo(0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The built-in body, its texels seen in a picture that is the atlas itself.
+/// Labels of the built-in body's texels from an image that is the atlas itself.
 #include "render/photo_avatar/texel_labels.h"
 
 #include <gtest/gtest.h>

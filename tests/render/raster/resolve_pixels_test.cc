@@ -231,7 +231,7 @@ TEST(ResolvePixels, TexelsAreSampledBilinearlyInFloat) {
   EXPECT_EQ(got, one);
 }
 
-TEST(ResolvePixels, AnEmptyPictureResolvesToNothing) {
+TEST(ResolvePixels, AnEmptyImageResolvesToNothing) {
   View view(MakePinhole(64, 64, 60), 38);
   view.vertices.col(0).array() += 100;
   view.buffer.Render(view.vertices, ToyBody().data().faces, view.camera);

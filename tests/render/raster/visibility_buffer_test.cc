@@ -148,7 +148,7 @@ Scene GridScene(int cells, double step, double shear) {
   return scene;
 }
 
-/// How many faces cover each pixel, each face drawn alone.
+/// Number of faces that cover each pixel, each face drawn alone.
 std::vector<int> Coverage(const Scene& scene) {
   std::vector<int> count(size_t(scene.camera.width) * scene.camera.height, 0);
   VisibilityBuffer buffer;

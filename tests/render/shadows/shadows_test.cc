@@ -94,18 +94,18 @@ TEST(ShadowMap, WhatIsNoLightIsRefused) {
   EXPECT_THROW(map.Render(mesh.vertices, mesh.faces, Vector3d::UnitY(), 4), std::invalid_argument);
 }
 
-TEST(Openness, BeforeAWallItIsTheKnownShare) {
+TEST(AmbientOcclusionTest, BeforeAWallItIsTheKnownShare) {
   // An endless wall of height h at distance d takes ½ (1 − d/√(d² + h²)) of what a floor sees; here it is 8 m wide.
   constexpr double kHeight = 1;
   const Mesh mesh = OfSheets({{{0, 0, 4}, {2, 0, 0}, {0, 0, -8}}, {{0, 0, -4}, {0, kHeight, 0}, {0, 0, 8}}}, 40);
-  OpennessOfMesh open;
-  const std::vector<float>& openness = open.Compute(mesh.vertices, mesh.normals, mesh.faces);
+  AmbientOcclusion open;
+  const std::vector<float>& ambient_occlusion = open.Compute(mesh.vertices, mesh.normals, mesh.faces);
   double sum = 0;
   int count = 0;
   for (Eigen::Index v = 0; v < mesh.vertices.rows() / 2; ++v) {
     const double d = mesh.vertices(v, 0);
     if (d < 0.1 || std::abs(mesh.vertices(v, 2)) > 0.5) continue;
-    const double error = openness[v] - (1 - 0.5 * (1 - d / std::hypot(d, kHeight)));
+    const double error = ambient_occlusion[v] - (1 - 0.5 * (1 - d / std::hypot(d, kHeight)));
     EXPECT_LT(std::abs(error), 0.08) << d;  // 24 directions a side
     sum += error;
     ++count;
@@ -114,7 +114,7 @@ TEST(Openness, BeforeAWallItIsTheKnownShare) {
   EXPECT_LT(std::abs(sum / count), 0.02);
 }
 
-TEST(Openness, WhatIsConvexIsOpen) {
+TEST(AmbientOcclusionTest, WhatIsConvexIsOpen) {
   Mesh mesh;  // a box, seen from outside, corners shared by nothing
   mesh = OfSheets({{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}},
                    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -123,7 +123,7 @@ TEST(Openness, WhatIsConvexIsOpen) {
                    {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}},
                    {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}},
                   6);
-  OpennessOfMesh open;
+  AmbientOcclusion open;
   for (const float value : open.Compute(mesh.vertices, mesh.normals, mesh.faces)) EXPECT_EQ(value, 1);
   mesh.normals *= -1;  // from inside nothing is
   const std::vector<float>& inside = open.Compute(mesh.vertices, mesh.normals, mesh.faces);

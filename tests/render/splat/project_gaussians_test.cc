@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Projection against its twin and closed forms, its derivatives against automatic ones and differences, and what is not
-// drawn.
+// Projection against its twin and closed forms, its derivatives against automatic ones and differences, and the
+// Gaussians that are not drawn.
 #include "render/splat/project_gaussians.h"
 
 #include <gtest/gtest.h>
@@ -88,8 +88,8 @@ TEST(ProjectGaussians, IsItsTwin) {
             TwinProject(TwinGaussianOf(RowOf<double, In::kNumColumns>(cloud.columns, i)), camera, low_pass);
         const FloatColumns& c = screen.columns;
         for (int k = 0; k < 2; ++k) EXPECT_NEAR(c(i, Out::kMeanX + k), twin.mean[k], 2e-5) << i;
-        const double most = std::max(twin.conic[0], twin.conic[2]);
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(c(i, Out::kConicXx + k), twin.conic[k], 2e-5 * most) << i;
+        const double maximum = std::max(twin.conic[0], twin.conic[2]);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(c(i, Out::kConicXx + k), twin.conic[k], 2e-5 * maximum) << i;
         EXPECT_NEAR(c(i, Out::kLog2Opacity), std::log2(twin.opacity), 1e-6);
       }
       EXPECT_GE(drawn, 290);

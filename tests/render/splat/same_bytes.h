@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Runs work with every instruction set of the machine and several numbers of threads; tables compared to the bit.
+/// Runs work with every instruction set of the machine and several numbers of threads and compares the tables bit for
+/// bit.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives of pictures against automatic ones of the twin, which are checked against differences.
+// Derivatives of images against automatic ones of the twin, which are checked against differences.
 #include "render/splat/splat_gradient.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using Jet = ceres::Jet<double, Screen::kNumGradients>;
 
 /// d loss / d pixel: the loss is the sum of the planes times these.
 FloatColumns PixelWeights(const PixelBox& window, uint32_t seed) {
-  FloatColumns weights(SplatPicture::kNumPlanes, static_cast<int>(window.area()));
+  FloatColumns weights(SplatImage::kNumPlanes, static_cast<int>(window.area()));
   std::mt19937 generator(seed);
   for (int p = 0; p < weights.columns(); ++p) {
     for (float& w : weights.values(p)) w = static_cast<float>(generator() / 2147483648.0 - 1);
@@ -27,21 +27,21 @@ FloatColumns PixelWeights(const PixelBox& window, uint32_t seed) {
 
 template <class T>
 T Loss(const std::vector<TwinSplat<T>>& splats, const PixelBox& window, double stop, const FloatColumns& weights) {
-  const auto picture = TwinDraw(splats, window, stop);
+  const auto image = TwinDraw(splats, window, stop);
   T sum(0);
   for (int p = 0; p < 4; ++p) {
-    for (int i = 0; i < weights.rows(); ++i) sum += T(weights(i, p)) * picture.planes[p][i];
+    for (int i = 0; i < weights.rows(); ++i) sum += T(weights(i, p)) * image.planes[p][i];
   }
   return sum;
 }
 
 FloatColumns Gradient(const Screen& screen, const PixelBox& window, float stop, const FloatColumns& weights,
                       int threads = 1) {
-  SplatPicture picture;
-  picture.Draw(screen, window, {.stop_transmittance = stop, .num_threads = threads});
+  SplatImage image;
+  image.Draw(screen, window, {.stop_transmittance = stop, .num_threads = threads});
   SplatGradient gradient;
   FloatColumns by;
-  gradient.Compute(picture, screen, weights, threads, &by);
+  gradient.Compute(image, screen, weights, threads, &by);
   return by;
 }
 
@@ -105,8 +105,8 @@ TEST(SplatGradient, OfOneGaussianInClosedForm) {
   // The loss is one pixel's alpha: α = o exp(−½ q).
   const Screen screen = ScreenOf({{8.5F, 7.25F, 4, 0.5F, 1, 1, 1, 2}});
   const PixelBox window{0, 0, 16, 16};
-  FloatColumns weights(SplatPicture::kNumPlanes, 256);
-  weights(static_cast<int>(window.IndexOf(10, 8)), SplatPicture::kAlpha) = 1;
+  FloatColumns weights(SplatImage::kNumPlanes, 256);
+  weights(static_cast<int>(window.IndexOf(10, 8)), SplatImage::kAlpha) = 1;
   const FloatColumns by = Gradient(screen, window, 0, weights);
   const double dx = 1.5, dy = 0.75, alpha = 0.5 * std::exp(-0.5 * (dx * dx + dy * dy) / 4);
   EXPECT_NEAR(by(0, Screen::kMeanX), alpha * dx / 4, 1e-6);
@@ -121,8 +121,8 @@ TEST(SplatGradient, OfOneGaussianInClosedForm) {
 TEST(SplatGradient, AtTheLimitOnlyColourMoves) {
   const Screen screen = ScreenOf({{8, 8, 4, 1, 1, 1, 1, 2}});
   const PixelBox window{0, 0, 16, 16};
-  FloatColumns weights(SplatPicture::kNumPlanes, 256);
-  weights(static_cast<int>(window.IndexOf(8, 8)), SplatPicture::kRed) = 1;
+  FloatColumns weights(SplatImage::kNumPlanes, 256);
+  weights(static_cast<int>(window.IndexOf(8, 8)), SplatImage::kRed) = 1;
   const FloatColumns by = Gradient(screen, window, 0, weights);
   for (int c = 0; c < Screen::kRed; ++c) EXPECT_EQ(by(0, c), 0) << c;
   EXPECT_NEAR(by(0, Screen::kRed), 0.99, 1e-6);
@@ -158,7 +158,7 @@ TEST(SplatGradient, ThePixelsOfAWindowAddUp) {
   const PixelBox whole{0, 0, 96, 80}, left{0, 0, 41, 80}, right{41, 0, 96, 80};
   const FloatColumns weights = PixelWeights(whole, 3);
   const auto part = [&](const PixelBox& window) {
-    FloatColumns cut(SplatPicture::kNumPlanes, static_cast<int>(window.area()));
+    FloatColumns cut(SplatImage::kNumPlanes, static_cast<int>(window.area()));
     for (int y = window.y_begin; y < window.y_end; ++y) {
       for (int x = window.x_begin; x < window.x_end; ++x) {
         for (int p = 0; p < 4; ++p) {
@@ -178,14 +178,14 @@ TEST(SplatGradient, ThePixelsOfAWindowAddUp) {
 
 TEST(SplatGradient, RefusesTablesOfOtherSizes) {
   const Screen screen = SeenCloud(10, 1);
-  SplatPicture picture;
-  picture.Draw(screen, {0, 0, 20, 20});
+  SplatImage image;
+  image.Draw(screen, {0, 0, 20, 20});
   SplatGradient gradient;
   FloatColumns by;
-  EXPECT_THROW(gradient.Compute(picture, screen, FloatColumns(4, 399), 1, &by), std::invalid_argument);
-  EXPECT_THROW(gradient.Compute(picture, screen, FloatColumns(3, 400), 1, &by), std::invalid_argument);
-  EXPECT_THROW(gradient.Compute(picture, SeenCloud(9, 1), FloatColumns(4, 400), 1, &by), std::invalid_argument);
-  EXPECT_THROW(gradient.Compute(picture, screen, FloatColumns(4, 400), 0, &by), std::invalid_argument);
+  EXPECT_THROW(gradient.Compute(image, screen, FloatColumns(4, 399), 1, &by), std::invalid_argument);
+  EXPECT_THROW(gradient.Compute(image, screen, FloatColumns(3, 400), 1, &by), std::invalid_argument);
+  EXPECT_THROW(gradient.Compute(image, SeenCloud(9, 1), FloatColumns(4, 400), 1, &by), std::invalid_argument);
+  EXPECT_THROW(gradient.Compute(image, screen, FloatColumns(4, 400), 0, &by), std::invalid_argument);
 }
 
 }  // namespace

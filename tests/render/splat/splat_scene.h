@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Gaussians on the screen for tests of pictures and their derivatives.
+/// Gaussians on the screen for tests of images and their derivatives.
 #pragma once
 
 #include "render/splat/project_gaussians.h"

@@ -59,7 +59,7 @@ TEST_P(TextureOfCamera, IsThePaintOnTheBody) {
     TextureExtractor extractor(body, options);
     for (int t = 0; t < 8; ++t) {
       const MatrixX3d vertices = Posed(t, 0.8 * t);
-      EXPECT_GT(extractor.Add(PaintedPicture(body, vertices, camera), vertices, camera, t), 300);
+      EXPECT_GT(extractor.Add(PaintedImage(body, vertices, camera), vertices, camera, t), 300);
     }
     const Texture texture = extractor.Merge();
     const Comparison found = Compare(texture, extractor.table(), body);
@@ -82,12 +82,12 @@ TEST(TextureExtract, SourceMapsSayWhereTheColourIs) {
   options.texels.width = options.texels.height = 96;
   options.keep = 1;
   TextureExtractor extractor(body, options);
-  std::vector<Image> pictures;
+  std::vector<Image> images;
   std::vector<MatrixX3d> bodies;
   for (int t = 0; t < 3; ++t) {
     bodies.push_back(Posed(t, 2.0 * t));
-    pictures.push_back(PaintedPicture(body, bodies[t], camera));
-    extractor.Add(pictures[t], bodies[t], camera, 10 + t);
+    images.push_back(PaintedImage(body, bodies[t], camera));
+    extractor.Add(images[t], bodies[t], camera, 10 + t);
   }
   const Texture texture = extractor.Merge();
   const UvTexelTable& table = extractor.table();
@@ -102,7 +102,7 @@ TEST(TextureExtract, SourceMapsSayWhereTheColourIs) {
     const int t = texture.source_frame[p] - 10;
     ASSERT_TRUE(t >= 0 && t < 3);
     float bgr[3];
-    SampleImage(pictures[t], texture.source_x_px[p], texture.source_y_px[p], bgr);
+    SampleImage(images[t], texture.source_x_px[p], texture.source_y_px[p], bgr);
     for (int c = 0; c < 3; ++c) ASSERT_EQ(texture.bgr[c * 9216 + p], bgr[c]);
     // The texel's point lies there.
     Vector3d point = Vector3d::Zero();
@@ -119,7 +119,7 @@ TEST(TextureExtract, StaysAwayFromContours) {
   const BodyModel& body = ToyBody();
   const Camera camera = MakePinhole(200, 200, 240);
   const MatrixX3d vertices = Posed(2, 0.4);
-  const Image picture = PaintedPicture(body, vertices, camera);
+  const Image image = PaintedImage(body, vertices, camera);
   const Colour background = {255, 0, 255};
   size_t before = 1 << 30;
   for (const int margin : {0, 2, 6}) {
@@ -127,7 +127,7 @@ TEST(TextureExtract, StaysAwayFromContours) {
     options.texels.width = options.texels.height = 96;
     options.edge_margin_px = margin;
     TextureExtractor extractor(body, options);
-    extractor.Add(picture, vertices, camera, 0);
+    extractor.Add(image, vertices, camera, 0);
     const Texture texture = extractor.Merge();
     EXPECT_GT(texture.num_seen, margin == 6 ? 50 : 300);
     EXPECT_LT(static_cast<size_t>(texture.num_seen), before);
@@ -137,8 +137,8 @@ TEST(TextureExtract, StaysAwayFromContours) {
       const int x = static_cast<int>(std::lround(texture.source_x_px[p]));
       const int y = static_cast<int>(std::lround(texture.source_y_px[p]));
       for (int d = -margin; d <= margin; ++d) {
-        ASSERT_FALSE(picture.at(x + d, y) == background) << margin;
-        ASSERT_FALSE(picture.at(x, y + d) == background) << margin;
+        ASSERT_FALSE(image.at(x + d, y) == background) << margin;
+        ASSERT_FALSE(image.at(x, y + d) == background) << margin;
       }
     }
   }
@@ -159,7 +159,7 @@ TEST(TextureExtract, MedianForgetsAMisplacedFrame) {
       const MatrixX3d vertices = Posed(1, 0.05 * t);
       MatrixX3d tracked = vertices;
       if (t == 2) tracked.col(0).array() += 0.08;  // the track was 8 cm off
-      extractor.Add(PaintedPicture(body, vertices, camera), tracked, camera, t);
+      extractor.Add(PaintedImage(body, vertices, camera), tracked, camera, t);
     }
     Texture texture = extractor.Merge();
     if (kind == 0) {
@@ -172,7 +172,7 @@ TEST(TextureExtract, MedianForgetsAMisplacedFrame) {
   EXPECT_GT(psnr[0], psnr[1] + 3);
 }
 
-TEST(TexelSight, HiddenTexelsAreNotSeen) {
+TEST(TexelVisibility, HiddenTexelsAreNotSeen) {
   // Two spheres, the small one in front; what the small one covers of the large one is hidden.
   const BodyModelData one = SphereOfOctants(4);
   BodyModelData two = one;
@@ -204,7 +204,7 @@ TEST(TexelSight, HiddenTexelsAreNotSeen) {
   VisibilityBuffer buffer;
   buffer.Render(vertices, body.data().faces, camera);
   const UvTexelTable table = BuildUvTexelTable(body, {.width = 256, .height = 128});
-  const auto sights = SeeTexels(table, body, vertices, camera, buffer, {.min_cosine = 0.1});
+  const auto sights = ComputeTexelVisibility(table, body, vertices, camera, buffer, {.min_cosine = 0.1});
   int seen = 0, hidden = 0;
   for (size_t i = 0; i < table.size(); ++i) {
     if (table.in_gutter[i]) {
@@ -234,7 +234,8 @@ TEST(TexelSight, HiddenTexelsAreNotSeen) {
   for (const Vector3d& away : {Vector3d(50, 0, 0), Vector3d(0, 0, -20)}) {
     const MatrixX3d moved = vertices.rowwise() + away.transpose();
     buffer.Render(moved, body.data().faces, camera);
-    for (const TexelSight& sight : SeeTexels(table, body, moved, camera, buffer)) ASSERT_EQ(sight.cosine, 0);
+    for (const TexelVisibility& sight : ComputeTexelVisibility(table, body, moved, camera, buffer))
+      ASSERT_EQ(sight.cosine, 0);
   }
 }
 

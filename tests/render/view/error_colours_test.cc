@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geometry/body/posed_body.h"
-#include "render/view/attribute_picture.h"
+#include "render/view/attribute_image.h"
 #include "render/view/caption.h"
 #include "tests/support/toy_body.h"
 
@@ -106,7 +106,7 @@ TEST(ErrorColours, OnASurfacePixelsHaveTheirErrorsColours) {
   const Camera camera = MakePinhole(160, 200, 250);
   std::vector<float> errors(body.num_vertices());
   for (int v = 0; v < body.num_vertices(); ++v) errors[v] = static_cast<float>(40 + 50 * vertices(v, 1));
-  AttributePictureOptions options;
+  AttributeImageOptions options;
   options.attribute = SurfaceAttribute::kError;
   options.vertex_errors = errors;
   options.error_maximum = 60;

@@ -173,14 +173,14 @@ TEST(Overlay, DrawsTheBodyWhereTheCameraSeesIt) {
   const Track track = StandingTrack(3, MakePinhole(160, 120, 130));
   const OverlayRenderer renderer(ToyBody(), track);
   const Image video(160, 120, {0, 200, 0});
-  const Image picture = renderer.Render(2, {.background = &video});
-  EXPECT_EQ(picture.width, 160);
+  const Image image = renderer.Render(2, {.background = &video});
+  EXPECT_EQ(image.width, 160);
   Eigen::Vector2d pelvis;
   const MatrixX3d vertices = TrackVertices(ToyBody(), track, 2);
   ASSERT_TRUE(track.camera.Project(vertices.colwise().mean().transpose(), &pelvis));
-  EXPECT_NE(picture.at(int(pelvis.x()), int(pelvis.y())), video.at(0, 0));
-  EXPECT_EQ(picture.at(5, 5), video.at(0, 0));
-  EXPECT_EQ(renderer.Render(2, {.background = &video}), picture) << "same input, same bytes";
+  EXPECT_NE(image.at(int(pelvis.x()), int(pelvis.y())), video.at(0, 0));
+  EXPECT_EQ(image.at(5, 5), video.at(0, 0));
+  EXPECT_EQ(renderer.Render(2, {.background = &video}), image) << "same input, same bytes";
 }
 
 TEST(Overlay, ACameraThatMovesShowsEachFrameAsItSawIt) {
@@ -215,8 +215,8 @@ TEST(Overlay, SideViewShowsErrorsInDepth) {
   options.side_view = true;
   const OverlayRenderer right(ToyBody(), truth, options, &truth), wrong(ToyBody(), estimate, options, &truth);
   EXPECT_EQ(right.width(), 160 + 90);
-  const Image picture = wrong.Render(3, {}), reference = right.Render(3, {});
-  EXPECT_EQ(picture.width, right.width());
+  const Image drawn = wrong.Render(3, {}), reference = right.Render(3, {});
+  EXPECT_EQ(drawn.width, right.width());
   // Orange (the truth) stands free of blue (the estimate) only when the depth is wrong.
   const auto orange = [](const Image& image) {
     int count = 0;
@@ -228,7 +228,7 @@ TEST(Overlay, SideViewShowsErrorsInDepth) {
     }
     return count;
   };
-  EXPECT_GT(orange(picture), 150);
+  EXPECT_GT(orange(drawn), 150);
   EXPECT_LT(orange(reference), 40);
 }
 
@@ -252,9 +252,9 @@ TEST(Overlay, DrawsDetectionsOfKnownNames) {
   for (const bool skeleton : {false, true}) {
     OverlayOptions options;
     options.skeleton = skeleton;
-    const Image picture =
+    const Image image =
         OverlayRenderer(ToyBody(), track, options).Render(1, {.background = &video, .detected = &detected});
-    EXPECT_NE(picture.at(10 + 3 * 14, 20 + 4 * 14), video.at(0, 0)) << "landmark 14";
+    EXPECT_NE(image.at(10 + 3 * 14, 20 + 4 * 14), video.at(0, 0)) << "landmark 14";
   }
 }
 

@@ -54,8 +54,8 @@ TEST(PeopleOverlay, TheNearerBodyCoversWhicheverComesFirst) {
   const Image video(480, 360, {0, 200, 0});
   const PersonInOverlay front{.body = &ToyBody(), .track = &near, .number = 0};
   const PersonInOverlay back{.body = &ToyBody(), .track = &far, .number = 1};
-  const Image picture = PeopleOverlay({front, back}).Render(0, &video);
-  EXPECT_TRUE(SameBelowCaption(picture, PeopleOverlay({back, front}).Render(0, &video)));
+  const Image image = PeopleOverlay({front, back}).Render(0, &video);
+  EXPECT_TRUE(SameBelowCaption(image, PeopleOverlay({back, front}).Render(0, &video)));
   const Image front_alone = PeopleOverlay({front}).Render(0, &video);
   const Image back_alone = PeopleOverlay({back}).Render(0, &video);
   int covered = 0, both_seen = 0;
@@ -63,17 +63,17 @@ TEST(PeopleOverlay, TheNearerBodyCoversWhicheverComesFirst) {
     for (int x = 0; x < 480; ++x) {
       const bool of_front = !(front_alone.at(x, y) == video.at(0, 0));
       const bool of_back = !(back_alone.at(x, y) == video.at(0, 0));
-      covered += of_front && of_back && picture.at(x, y) == front_alone.at(x, y);
+      covered += of_front && of_back && image.at(x, y) == front_alone.at(x, y);
       both_seen += of_front && of_back;
       // The dark line along the front body's contour falls onto the other body's pixels too: only where it is alone.
       if (!of_front && !of_back) {
-        ASSERT_EQ(picture.at(x, y), video.at(0, 0)) << x << " " << y;
+        ASSERT_EQ(image.at(x, y), video.at(0, 0)) << x << " " << y;
       }
     }
   }
   EXPECT_GT(both_seen, 1000);
   EXPECT_GT(covered, 0.85 * both_seen);
-  EXPECT_FALSE(SameBelowCaption(picture, front_alone)) << "the other one is seen beside it";
+  EXPECT_FALSE(SameBelowCaption(image, front_alone)) << "the other one is seen beside it";
 }
 
 TEST(PeopleOverlay, WhoeverIsNotThereIsNotDrawn) {
@@ -96,13 +96,13 @@ TEST(PeopleOverlay, TheSideViewShowsWhoStandsInFront) {
   const PeopleOverlay both(
       {{.body = &ToyBody(), .track = &near, .number = 0}, {.body = &ToyBody(), .track = &far, .number = 1}}, options);
   EXPECT_EQ(both.width(), 480 + 270);
-  const Image picture = both.Render(1, nullptr);
+  const Image image = both.Render(1, nullptr);
   // In the panel the two stand apart: the mean place of each one's colour (PersonColour: blue, and yellow).
   double blue = 0, yellow = 0;
   int num_blue = 0, num_yellow = 0;
   for (int y = 0; y < 270; ++y) {
     for (int x = 480; x < 750; ++x) {
-      const Colour c = picture.at(x, y);
+      const Colour c = image.at(x, y);
       if (c.blue > c.red + 40) blue += x, ++num_blue;
       if (c.red > c.blue + 40) yellow += x, ++num_yellow;
     }

@@ -39,18 +39,18 @@ TEST(PersonWindow, ShrinksTallPeopleAndNeverEnlarges) {
   EXPECT_NEAR(large.scale_x, 256.0 / (1000 * 1.25), 0.01);  // the margin above ends at the picture's border
 }
 
-TEST(PersonWindow, CameraAndPictureAgree) {
-  Image picture(320, 240);
+TEST(PersonWindow, CameraAndImageAgree) {
+  Image image(320, 240);
   for (int y = 0; y < 240; ++y) {
     for (int x = 0; x < 320; ++x) {
-      picture.pixel(x, y)[0] = static_cast<uint8_t>(x / 2);
-      picture.pixel(x, y)[1] = static_cast<uint8_t>(y);
+      image.pixel(x, y)[0] = static_cast<uint8_t>(x / 2);
+      image.pixel(x, y)[1] = static_cast<uint8_t>(y);
     }
   }
   const PersonWindow window =
       PlanPersonWindow({Box(100, 30, 200, 210)}, 320, 240, {.max_side = 96, .multiple = 16, .margin = 0.05});
-  const Image cut = CutWindow(picture, window, 0);
-  const std::vector<uint8_t> labels = CutLabels(picture, window, 0);
+  const Image cut = CutWindow(image, window, 0);
+  const std::vector<uint8_t> labels = CutLabels(image, window, 0);
   const Camera camera = MakePinhole(320, 240, 300), inside = CameraInWindow(camera, window, 0);
   for (const Eigen::Vector3d& point : {Eigen::Vector3d(0, 0, 3), Eigen::Vector3d(-0.3, 0.4, 2.5)}) {
     Eigen::Vector2d original, cropped;
@@ -63,15 +63,15 @@ TEST(PersonWindow, CameraAndPictureAgree) {
   }
 }
 
-TEST(PersonWindow, BlackOutsideThePicture) {
-  Image picture(64, 64, {255, 255, 255});
+TEST(PersonWindow, BlackOutsideTheImage) {
+  Image image(64, 64, {255, 255, 255});
   PersonWindow window = PlanPersonWindow({Box(0, 0, 20, 60)}, 64, 64, {.multiple = 16, .margin = 0});
   window.corner[0] = {-5, -3};
-  const Image cut = CutWindow(picture, window, 0);
+  const Image cut = CutWindow(image, window, 0);
   EXPECT_EQ(cut.at(4, 10), Colour());
   EXPECT_EQ(cut.at(5, 10), (Colour{255, 255, 255}));
-  EXPECT_EQ(CutLabels(picture, window, 0)[2 * window.width + 20], 0);
-  EXPECT_EQ(CutLabels(picture, window, 0)[3 * window.width + 20], 255);
+  EXPECT_EQ(CutLabels(image, window, 0)[2 * window.width + 20], 0);
+  EXPECT_EQ(CutLabels(image, window, 0)[3 * window.width + 20], 255);
 }
 
 TEST(PersonWindow, RefusesWhatMakesNoSense) {

@@ -128,7 +128,7 @@ TEST(MeshDrawer, BordersOfTheImageEndNoSurface) {
   }
 }
 
-TEST(Overlay, SamePictureForAnyNumberOfThreads) {
+TEST(Overlay, SameImageForAnyNumberOfThreads) {
   Track track;
   track.camera = MakePinhole(160, 120, 130);
   track.motion.up = Motion::Up::kCamera;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How lively a motion is, against a joint that turns with a known acceleration.
+// Estimated motion level against a joint that turns with a known acceleration.
 #include "tracking/clip/clip_fit.h"
 
 #include <gtest/gtest.h>
@@ -45,11 +45,11 @@ TEST(MotionLevel, SmoothnessFollowsItWithinItsRange) {
   EXPECT_NEAR(fitted(7).tip_acceleration, 7 * kSigmaOfRms, 1e-6);
   EXPECT_NEAR(fitted(7).root_acceleration, start.root_acceleration * 28 / 25, 1e-6);
   EXPECT_NEAR(fitted(7).of_joint[1], 7 * kSigmaOfRms, 1e-6);
-  EXPECT_EQ(fitted(7).of_joint[0], kLeastOfJoint);
-  EXPECT_EQ(fitted(30).of_joint[1], kMostOfJoint);
+  EXPECT_EQ(fitted(7).of_joint[0], kMinOfJoint);
+  EXPECT_EQ(fitted(30).of_joint[1], kMaxOfJoint);
   EXPECT_TRUE(fitted(0).of_joint.empty());
-  EXPECT_EQ(fitted(0.5).tip_acceleration, kLeastSigma);
-  EXPECT_EQ(fitted(30).tip_acceleration, kMostSigma);
+  EXPECT_EQ(fitted(0.5).tip_acceleration, kMinSigma);
+  EXPECT_EQ(fitted(30).tip_acceleration, kMaxSigma);
   EXPECT_EQ(fitted(0).tip_acceleration, start.tip_acceleration);
 }
 

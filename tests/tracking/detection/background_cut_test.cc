@@ -21,10 +21,10 @@ struct Known {
   explicit Known(double gain = 1) : clip(kFrames, 0, gain) {
     background.colours = clip.wall;
     background.sigma.assign(clip.masks[0].size(), 3);
-    for (int t = 0; t < kFrames / 2; ++t) AddClearInside(clip.pictures[t], clip.CoarseMask(t), &person);
+    for (int t = 0; t < kFrames / 2; ++t) AddClearInside(clip.images[t], clip.CoarseMask(t), &person);
   }
   [[nodiscard]] std::vector<uint8_t> CutAt(int t, std::span<const uint8_t> others = {}) const {
-    return Whole(*CutFromBackground(clip.pictures[t], clip.CoarseMask(t), others, background, person));
+    return Whole(*CutFromBackground(clip.images[t], clip.CoarseMask(t), others, background, person));
   }
   static std::vector<uint8_t> Whole(const LabelImage& mask) {
     std::vector<uint8_t> whole;
@@ -56,7 +56,7 @@ TEST(BackgroundCut, AShadowIsNotThePerson) {
   std::vector<uint8_t> shadowed = known.clip.masks[10];
   for (int y = 98; y < 114; ++y) {
     for (int x = 30; x < 130; ++x) {
-      uint8_t* bgr = known.clip.pictures[10].pixel(x, y);
+      uint8_t* bgr = known.clip.images[10].pixel(x, y);
       const bool is_wall = known.clip.masks[10][size_t(y) * MaskedClip::kWidth + x] == 0;
       for (int c = 0; is_wall && c < 3; ++c) bgr[c] = static_cast<uint8_t>(0.75 * bgr[c]);
     }
@@ -80,7 +80,7 @@ TEST(BackgroundCut, ColoursThatThePersonSharesWithTheWallDoNotTearItApart) {
   for (int y = 75; y < 95; ++y) {
     for (int x = 40; x < 120; ++x) {
       uint8_t* wall = known.background.colours.pixel(x, y);
-      uint8_t* seen = known.clip.pictures[10].pixel(x, y);
+      uint8_t* seen = known.clip.images[10].pixel(x, y);
       wall[0] = 30, wall[1] = 22, wall[2] = 20;
       if (known.clip.masks[10][size_t(y) * MaskedClip::kWidth + x] == 0) std::copy_n(wall, 3, seen);
     }
@@ -102,12 +102,12 @@ TEST(BackgroundCut, LeavesToOthersWhatIsTheirs) {
   std::vector<uint8_t> upper = coarse;
   for (size_t i = size_t(80) * MaskedClip::kWidth; i < others.size(); ++i)
     others[i] = known.clip.masks[10][i], upper[i] = 0;
-  const Image& picture = known.clip.pictures[10];
+  const Image& image = known.clip.images[10];
   const std::vector<uint8_t> mask =
-      Known::Whole(*CutFromBackground(picture, upper, others, known.background, known.person));
+      Known::Whole(*CutFromBackground(image, upper, others, known.background, known.person));
   EXPECT_EQ(std::count(mask.begin() + size_t(82) * MaskedClip::kWidth, mask.end(), 1), 0);
   EXPECT_GT(std::count(mask.begin(), mask.end(), 1), 1400);
-  EXPECT_FALSE(CutFromBackground(picture, upper, {}, known.background, known.person).has_value())
+  EXPECT_FALSE(CutFromBackground(image, upper, {}, known.background, known.person).has_value())
       << "somebody whom nobody told of stands there";
 }
 
@@ -115,33 +115,33 @@ TEST(BackgroundCut, IsNoneWhereTheBackgroundIsAnother) {
   const Known known;
   // As if the camera had turned by 5 px: the wall's waves are elsewhere.
   Image moved(MaskedClip::kWidth, MaskedClip::kHeight);
-  Paste(known.clip.pictures[10], 5, 0, &moved);
+  Paste(known.clip.images[10], 5, 0, &moved);
   std::vector<uint8_t> coarse(known.clip.masks[10].size(), 0);
   for (size_t i = 5; i < coarse.size(); ++i) coarse[i] = known.clip.masks[10][i - 5];
   EXPECT_FALSE(CutFromBackground(moved, coarse, {}, known.background, known.person).has_value());
-  EXPECT_TRUE(CutFromBackground(known.clip.pictures[10], known.clip.masks[10], {}, known.background, known.person));
+  EXPECT_TRUE(CutFromBackground(known.clip.images[10], known.clip.masks[10], {}, known.background, known.person));
 }
 
 TEST(BackgroundCut, StraysAreLeftOutAndNobodyIsNobody) {
   const Known known;
   std::vector<uint8_t> coarse = known.clip.masks[2];
-  Image picture = known.clip.pictures[2];
+  Image image = known.clip.images[2];
   for (int y = 4; y < 9; ++y) {
     for (int x = 50; x < 56; ++x) {
       coarse[size_t(y) * MaskedClip::kWidth + x] = 1;
-      picture.pixel(x, y)[2] = 250;
+      image.pixel(x, y)[2] = 250;
     }
   }
-  const LabelImage cut = *CutFromBackground(picture, coarse, {}, known.background, known.person);
+  const LabelImage cut = *CutFromBackground(image, coarse, {}, known.background, known.person);
   EXPECT_EQ(cut.At(52, 6), 0);
   EXPECT_EQ(cut.At(40, 40), 1);
   const std::vector<uint8_t> nobody(coarse.size(), 0);
-  EXPECT_TRUE(CutFromBackground(picture, nobody, {}, known.background, known.person)->labels.empty());
-  EXPECT_THROW(CutFromBackground(picture, std::span(coarse).first(9), {}, known.background, known.person),
+  EXPECT_TRUE(CutFromBackground(image, nobody, {}, known.background, known.person)->labels.empty());
+  EXPECT_THROW(CutFromBackground(image, std::span(coarse).first(9), {}, known.background, known.person),
                std::invalid_argument);
-  EXPECT_THROW(CutFromBackground(picture, coarse, std::span(coarse).first(9), known.background, known.person),
+  EXPECT_THROW(CutFromBackground(image, coarse, std::span(coarse).first(9), known.background, known.person),
                std::invalid_argument);
-  EXPECT_THROW(CutFromBackground(picture, coarse, {}, {}, known.person), std::invalid_argument);
+  EXPECT_THROW(CutFromBackground(image, coarse, {}, {}, known.person), std::invalid_argument);
 }
 
 TEST(ColourDensity, IsADensityOverAllColours) {

@@ -13,7 +13,7 @@
 #include "pipelines/photo_avatar/make_photo_person.h"
 #include "render/view/overlay.h"
 #include "render/view/view_camera.h"
-#include "tests/support/random_picture_unet.h"
+#include "tests/support/random_image_unet.h"
 #include "tests/support/short_track.h"
 
 namespace bodyloom::clothes_parser_test {
@@ -26,27 +26,27 @@ class ParsedPerson {
     rest_ = body_->data().v_template;
     vertices_ = TrackVertices(*body_, track_, 0);
     camera_ = track_.CameraAt(0);
-    picture_ = Image(camera_.width, camera_.height);
-    for (int y = 0; y < picture_.height; ++y) {
-      for (int x = 0; x < picture_.width; ++x) {
-        uint8_t* bgr = picture_.pixel(x, y);
+    image_ = Image(camera_.width, camera_.height);
+    for (int y = 0; y < image_.height; ++y) {
+      for (int x = 0; x < image_.width; ++x) {
+        uint8_t* bgr = image_.pixel(x, y);
         bgr[0] = static_cast<uint8_t>(x / 7 * 40), bgr[1] = static_cast<uint8_t>(y / 9 * 50), bgr[2] = 90;
       }
     }
     VisibilityBuffer buffer;
     buffer.Render(vertices_, body_->data().faces, camera_, {});
-    for (int y = 0; y < picture_.height; ++y) {
-      for (int x = 0; x < picture_.width; ++x) mask_.push_back(buffer.FaceAt(x, y) >= 0 ? 1 : 0);
+    for (int y = 0; y < image_.height; ++y) {
+      for (int x = 0; x < image_.width; ++x) mask_.push_back(buffer.FaceAt(x, y) >= 0 ? 1 : 0);
     }
   }
-  [[nodiscard]] PersonPhoto photo() const { return {&picture_, mask_, body_.get(), &rest_, &vertices_, camera_}; }
+  [[nodiscard]] PersonPhoto photo() const { return {&image_, mask_, body_.get(), &rest_, &vertices_, camera_}; }
   [[nodiscard]] double size() const { return PixelsPerMetre(camera_, vertices_.col(2).mean()); }
   [[nodiscard]] const std::vector<uint8_t>& mask() const { return mask_; }
   [[nodiscard]] const BodyModel& body() const { return *body_; }
   [[nodiscard]] FittedPhoto fitted() const {
     FittedPhoto photo;
-    photo.picture = picture_, photo.track = track_;
-    photo.mask = {0, 0, picture_.width, picture_.height, mask_};
+    photo.image = image_, photo.track = track_;
+    photo.mask = {0, 0, image_.width, image_.height, mask_};
     return photo;
   }
 
@@ -55,7 +55,7 @@ class ParsedPerson {
   Track track_;
   MatrixX3d rest_, vertices_;
   Camera camera_;
-  Image picture_;
+  Image image_;
   std::vector<uint8_t> mask_;
 };
 
@@ -72,10 +72,10 @@ TEST(ClothesParser, LayersHoldThePhotoAndTheBody) {
   EXPECT_EQ(layers.planes, ParserLayers(photo, 3).planes);
   ASSERT_EQ(layers.planes.size(), kParserPlanes.in * layers.pixels());
   size_t covered = 0, body = 0;
-  ForEachPixel(layers, photo.picture->width, photo.picture->height, [&](int x, int y, size_t i) {
-    const bool inside = photo.mask[static_cast<size_t>(y) * photo.picture->width + x] != 0;
+  ForEachPixel(layers, photo.image->width, photo.image->height, [&](int x, int y, size_t i) {
+    const bool inside = photo.mask[static_cast<size_t>(y) * photo.image->width + x] != 0;
     ASSERT_EQ(layers.Plane(PersonPlane::kAlpha)[i], inside ? 1 : 0);
-    ASSERT_FLOAT_EQ(layers.Plane(0)[i], inside ? static_cast<float>(photo.picture->pixel(x, y)[2]) / 255 : 0);
+    ASSERT_FLOAT_EQ(layers.Plane(0)[i], inside ? static_cast<float>(photo.image->pixel(x, y)[2]) / 255 : 0);
     covered += inside ? 1 : 0;
     body += layers.Plane(PersonPlane::kNormal + 2)[i] < 0 ? 1 : 0;
     ASSERT_TRUE(inside || layers.Plane(PersonPlane::kPlace + 1)[i] == 0);
@@ -92,11 +92,11 @@ TEST(ClothesParser, LabelsAreTheLargestAnswersAndColoursHaveTheLastWord) {
   const std::vector<uint8_t> labels = ClothesParser(weights).Labels(photo, 1);
   const PersonLayers layers = ParserLayers(photo, 1);
   const std::vector<float> answers =
-      PictureUnetRunner(weights.network, kParserPlanes).Run(layers.width, layers.height, layers.planes);
+      ImageUnetRunner(weights.network, kParserPlanes).Run(layers.width, layers.height, layers.planes);
   std::set<int> met;
   std::vector<uint8_t> expected(labels.size(), 0);
-  ForEachPixel(layers, photo.picture->width, photo.picture->height, [&](int x, int y, size_t i) {
-    const size_t at = static_cast<size_t>(y) * photo.picture->width + x;
+  ForEachPixel(layers, photo.image->width, photo.image->height, [&](int x, int y, size_t i) {
+    const size_t at = static_cast<size_t>(y) * photo.image->width + x;
     if (photo.mask[at] == 0) return;
     int best = 0;
     for (int c = 1; c < kParserClasses; ++c) {
@@ -105,7 +105,7 @@ TEST(ClothesParser, LabelsAreTheLargestAnswersAndColoursHaveTheLastWord) {
     expected[at] = static_cast<uint8_t>(1 + best);
     met.insert(1 + best);
   });
-  RelabelByColour(*photo.picture, expected);
+  RelabelByColour(*photo.image, expected);
   ASSERT_EQ(labels, expected);
   EXPECT_GE(met.size(), 3U) << "one class everywhere says little";
   for (size_t i = 0; i < labels.size(); ++i) ASSERT_EQ(labels[i] == 0, photo.mask[i] == 0) << i;

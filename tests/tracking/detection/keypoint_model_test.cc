@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// ONNX files of detectors from the file to landmarks in the image; the networks are scripted (small_onnx.h).
+/// Detectors from ONNX files, from file to landmarks in the image; the networks are scripted (small_onnx.h).
 #include "tracking/detection/keypoint_model.h"
 
 #include <gmock/gmock.h>
@@ -46,14 +46,14 @@ class OnnxDetectors : public ::testing::Test {
 };
 
 /// 1280 × 720 with that much red.
-Image Picture(uint8_t red = 0) { return {1280, 720, Colour{red, 0, 0}}; }
+Image TestImage(uint8_t red = 0) { return {1280, 720, Colour{red, 0, 0}}; }
 
 TEST_F(OnnxDetectors, YoloPoseFindsEverybody) {
   // The letterbox halves the picture and begins 140 rows below.
   const KeypointModel model(Yolo({StandingPerson(100, 300, 200, 0.5F, 0.25F), StandingPerson(400, 350, 300, 0.9F, 1)}));
   EXPECT_EQ(model.family(), KeypointFamily::kYoloPose);
   EXPECT_EQ(model.convention().name, "coco17");
-  const std::vector<YoloPerson> people = model.FindPeople(Picture());
+  const std::vector<YoloPerson> people = model.FindPeople(TestImage());
   ASSERT_EQ(people.size(), 2U);
   EXPECT_FLOAT_EQ(float(people[0].box.score), 0.9F);
   EXPECT_NEAR(people[0].box.y0, 2 * (200 - 140), 1e-3);
@@ -67,14 +67,14 @@ TEST_F(OnnxDetectors, RtmPoseLooksIntoABox) {
   const KeypointModel model(RtmPose(17));
   EXPECT_EQ(model.family(), KeypointFamily::kRtmPose);
   const std::vector<Keypoint> points =
-      model.PoseIn(Picture(), {200, 100, 300, 500, 1});  // 375 × 500 from (62.5, 50) on
+      model.PoseIn(TestImage(), {200, 100, 300, 500, 1});  // 375 × 500 from (62.5, 50) on
   ASSERT_EQ(points.size(), 17U);
   for (size_t k = 0; k < points.size(); ++k) {
     EXPECT_NEAR(points[k].x, 62.5 + 5.0 * double(k) * 375 / 192, 1e-3);
     EXPECT_NEAR(points[k].y, 50 + (10 + 5.5 * double(k)) * 500 / 256, 1e-3);
     EXPECT_EQ(points[k].confidence, 0.5F);
   }
-  EXPECT_THROW(model.FindPeople(Picture()), std::invalid_argument);
+  EXPECT_THROW(model.FindPeople(TestImage()), std::invalid_argument);
 }
 
 TEST_F(OnnxDetectors, LandmarksByTheirNumber) {
@@ -82,19 +82,19 @@ TEST_F(OnnxDetectors, LandmarksByTheirNumber) {
   const KeypointModel whole_body(
       Write("w.onnx", ScriptedRtmPose(192, 256, 2, std::vector<size_t>(133, 3), std::vector<size_t>(133, 4), 1)));
   EXPECT_EQ(whole_body.convention().name, "coco_wholebody23");
-  EXPECT_EQ(whole_body.PoseIn(Picture(), {200, 100, 300, 500, 1}).size(), 23U);
+  EXPECT_EQ(whole_body.PoseIn(TestImage(), {200, 100, 300, 500, 1}).size(), 23U);
   const KeypointModel fine(
       Write("f.onnx", ScriptedRtmPose(288, 384, 1, std::vector<size_t>(17, 3), std::vector<size_t>(17, 4), 1)));
   EXPECT_EQ(fine.family(), KeypointFamily::kRtmPose);
   const KeypointModel halpe(Write("h.onnx", ScriptedYoloPose({1, 3, 64, 96}, {}, 26, 100)));
   EXPECT_EQ(halpe.convention().name, "halpe26");
-  EXPECT_TRUE(halpe.FindPeople(Picture()).empty());
+  EXPECT_TRUE(halpe.FindPeople(TestImage()).empty());
 }
 
 TEST_F(OnnxDetectors, OpenSizes) {
   const KeypointModel model(
       Write("open.onnx", ScriptedYoloPose({-1, 3, -1, -1}, {StandingPerson(100, 300, 200, 0.5F, 1)}, 17, 80)));
-  const std::vector<YoloPerson> people = model.FindPeople(Picture());
+  const std::vector<YoloPerson> people = model.FindPeople(TestImage());
   ASSERT_EQ(people.size(), 1U);
   EXPECT_NEAR(people[0].points[0].y, 2 * (300 - 0.44 * 200 - 140), 1e-3);  // as in 640 × 640
 }
@@ -114,7 +114,7 @@ TEST_F(OnnxDetectors, ShapesThatAreNotKnownAreSaid) {
   EXPECT_THAT(of({1, 3, 64, 64}, {{1, 17, 128}, {1, 17, 64}}), HasSubstr("outputs of 1x17x128, 1x17x64"));
   EXPECT_THAT(of({1, 3, 64, 64}, {{1, 17, 320}, {1, 17, 320}}), HasSubstr("outputs of 1x17x320"));
   EXPECT_THAT(of({1, 3, 64, 64}, {{1, 56, 100}, {1, 1, 1}, {1, 1, 1}}), HasSubstr("outputs of 1x56x100, 1x1x1, 1x1x1"));
-  EXPECT_THAT(of({1, 1, 64, 64}, {{1, 56, 100}}), HasSubstr("an input of 1x1x64x64, expected one picture, 1x3xHxW"));
+  EXPECT_THAT(of({1, 1, 64, 64}, {{1, 56, 100}}), HasSubstr("an input of 1x1x64x64, expected one image, 1x3xHxW"));
   EXPECT_THAT(of({4, 3, 64, 64}, {{1, 56, 100}}), HasSubstr("an input of 4x3x64x64"));
   EXPECT_THAT(of({1, 3, 8192, 64}, {{1, 56, 100}}), HasSubstr("at most 4096 a side"));
 }
@@ -125,7 +125,7 @@ TEST_F(OnnxDetectors, FramesOfYoloPose) {
   const auto detector = MakeFrameDetector(With(Yolo({walker, StandingPerson(400, 350, 300, 0.9F, 1)})));
   EXPECT_EQ(detector->convention().name, "coco17");
   // The letterbox shows the picture's red in 360 of 640 rows, and grey in the others.
-  const std::vector<Image> frames = {Picture(0), Picture(255)};
+  const std::vector<Image> frames = {TestImage(0), TestImage(255)};
   const std::vector<std::vector<FramePerson>> people = detector->Detect(frames);
   ASSERT_EQ(people.size(), 2U);
   ASSERT_EQ(people[0].size(), 2U);
@@ -154,7 +154,7 @@ TEST_F(OnnxDetectors, FramesOfRtmPoseInYolosBoxes) {
             }()));
   EXPECT_EQ(KeypointModel(boxes).family(), KeypointFamily::kYoloBoxes);
   const auto detector = MakeFrameDetector(With(RtmPose(17), boxes));
-  const std::vector<Image> frames = {Picture()};
+  const std::vector<Image> frames = {TestImage()};
   const std::vector<std::vector<FramePerson>> people = detector->Detect(frames);
   ASSERT_EQ(people[0].size(), 1U);
   const std::vector<Keypoint> expected =

@@ -19,26 +19,26 @@ constexpr Colour kSkinColour{210, 160, 140}, kShirt{40, 90, 60}, kTrousers{30, 3
 
 /// From above: 10 rows of face, 20 of shirt, 10 of an arm, 20 of trousers.
 struct Scene {
-  Scene() : picture(kWidth, kHeight) {
+  Scene() : image(kWidth, kHeight) {
     for (int y = 0; y < kHeight; ++y) {
       const PersonLabel label = y < 10 ? kFace : (y < 30 ? kTop : (y < 40 ? kSkin : kBottom));
       const Colour colour = y < 10 || (y >= 30 && y < 40) ? kSkinColour : (y < 30 ? kShirt : kTrousers);
       for (int x = 0; x < kWidth; ++x) {
         labels.push_back(static_cast<uint8_t>(label));
-        uint8_t* p = picture.pixel(x, y);
+        uint8_t* p = image.pixel(x, y);
         p[0] = colour.blue, p[1] = colour.green, p[2] = colour.red;
       }
     }
   }
   uint8_t& At(int x, int y) { return labels[static_cast<size_t>(y) * kWidth + x]; }
-  Image picture;
+  Image image;
   std::vector<uint8_t> labels;
 };
 
 TEST(RelabelByColour, WhatIsRightStays) {
   Scene scene;
   const std::vector<uint8_t> before = scene.labels;
-  RelabelByColour(scene.picture, scene.labels);
+  RelabelByColour(scene.image, scene.labels);
   EXPECT_EQ(scene.labels, before);
 }
 
@@ -52,7 +52,7 @@ TEST(RelabelByColour, SkinAndClothesAreExchangedWhereColoursSaySo) {
     scene.At(x, 40) = static_cast<uint8_t>(kSkin);
   }
   ASSERT_NE(scene.labels, truth);
-  RelabelByColour(scene.picture, scene.labels);
+  RelabelByColour(scene.image, scene.labels);
   EXPECT_EQ(scene.labels, truth);
 }
 
@@ -60,12 +60,12 @@ TEST(RelabelByColour, ABareChestThatIsCalledATopStaysOne) {
   Scene scene;
   for (int y = 10; y < 30; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      uint8_t* p = scene.picture.pixel(x, y);
+      uint8_t* p = scene.image.pixel(x, y);
       p[0] = kSkinColour.blue, p[1] = kSkinColour.green, p[2] = kSkinColour.red;
     }
   }
   const std::vector<uint8_t> before = scene.labels;
-  RelabelByColour(scene.picture, scene.labels);
+  RelabelByColour(scene.image, scene.labels);
   EXPECT_EQ(scene.labels, before);
 }
 
@@ -74,7 +74,7 @@ TEST(RelabelByColour, HairShoesAndFacesAreLeftAlone) {
     Scene scene;
     for (int x = 0; x < kWidth; ++x) scene.At(x, 35) = static_cast<uint8_t>(label);
     const std::vector<uint8_t> before = scene.labels;
-    RelabelByColour(scene.picture, scene.labels);
+    RelabelByColour(scene.image, scene.labels);
     EXPECT_EQ(scene.labels, before);
   }
 }
@@ -86,13 +86,13 @@ TEST(RelabelByColour, WithoutAFaceNothingIsKnown) {
   }
   for (int x = 0; x < kWidth; ++x) scene.At(x, 30) = static_cast<uint8_t>(kTop);
   const std::vector<uint8_t> before = scene.labels;
-  RelabelByColour(scene.picture, scene.labels);
+  RelabelByColour(scene.image, scene.labels);
   EXPECT_EQ(scene.labels, before);
   std::vector<uint8_t> nobody(scene.labels.size(), 0);
-  RelabelByColour(scene.picture, nobody);
+  RelabelByColour(scene.image, nobody);
   EXPECT_EQ(nobody, std::vector<uint8_t>(scene.labels.size(), 0));
   scene.labels.pop_back();
-  EXPECT_THROW(RelabelByColour(scene.picture, scene.labels), std::invalid_argument);
+  EXPECT_THROW(RelabelByColour(scene.image, scene.labels), std::invalid_argument);
 }
 
 }  // namespace

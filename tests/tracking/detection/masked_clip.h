@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A small clip of which everything is known: a textured wall, and a person of two colours who walks by in front of it.
+/// A small clip with known truth: a textured wall, and a person of two colours who walks past it.
 #pragma once
 
 #include <cmath>
@@ -15,10 +15,10 @@ namespace bodyloom {
 struct MaskedClip {
   static constexpr int kWidth = 160, kHeight = 120;
   Image wall;
-  std::vector<Image> pictures;
+  std::vector<Image> images;
   std::vector<std::vector<uint8_t>> masks;  ///< the truth
 
-  /// `shift`: pixels by which the wall moves from frame to frame; `gain` of the light in the second half.
+  /// `shift`: motion of the wall, pixels per frame; `gain`: of the light in the second half.
   explicit MaskedClip(int num_frames, int shift = 0, double gain = 1) : wall(kWidth, kHeight) {
     std::mt19937 random(5);
     const auto noise = [&](int up_to) { return static_cast<int>(random() % (2 * up_to + 1)) - up_to; };
@@ -26,7 +26,7 @@ struct MaskedClip {
       for (int x = 0; x < kWidth; ++x) Paint(wall, x, y, WallAt(x, y));
     }
     for (int t = 0; t < num_frames; ++t) {
-      Image& picture = pictures.emplace_back(wall);
+      Image& frame = images.emplace_back(wall);
       std::vector<uint8_t>& mask = masks.emplace_back(size_t(kWidth) * kHeight, 0);
       const double light = 2 * t < num_frames ? 1 : gain;
       for (int y = 0; y < kHeight; ++y) {
@@ -37,13 +37,13 @@ struct MaskedClip {
           for (uint8_t* c : {&colour.red, &colour.green, &colour.blue}) {
             *c = static_cast<uint8_t>(std::min(255.0, std::max(0.0, light * *c + noise(2))));
           }
-          Paint(picture, x, y, colour);
+          Paint(frame, x, y, colour);
         }
       }
     }
   }
 
-  /// The truth without the feet and with a piece of the wall beside it, its edge off by 3 px.
+  /// The true mask without the feet, with a piece of the wall added, and with its edge off by 3 px.
   [[nodiscard]] std::vector<uint8_t> CoarseMask(int t) const {
     std::vector<uint8_t> coarse(masks[t].size(), 0);
     const int middle = MiddleAt(t, static_cast<int>(masks.size()));

@@ -24,7 +24,7 @@ class Simcc : public ::testing::Test {
   std::vector<float> columns_ = std::vector<float>(kLandmarks * kColumns, -0.5F),
                      rows_ = std::vector<float>(kLandmarks * kRows, -0.5F);
   /// 375 × 500 pixels from (62.5, 50) on.
-  PictureCrop crop_ = TopDownCrop({200, 100, 300, 500, 1}, 192, 256);
+  ImageCrop crop_ = TopDownCrop({200, 100, 300, 500, 1}, 192, 256);
 };
 
 TEST_F(Simcc, TheLargestScoresAreThePlace) {

@@ -11,10 +11,10 @@
 namespace bodyloom::still_background_test {
 namespace {
 
-std::vector<CoveredPicture> Covered(const MaskedClip& clip) {
-  std::vector<CoveredPicture> pictures;
-  for (size_t t = 0; t < clip.pictures.size(); ++t) pictures.push_back({clip.pictures[t], clip.masks[t]});
-  return pictures;
+std::vector<CoveredImage> Covered(const MaskedClip& clip) {
+  std::vector<CoveredImage> images;
+  for (size_t t = 0; t < clip.images.size(); ++t) images.push_back({clip.images[t], clip.masks[t]});
+  return images;
 }
 
 TEST(StillBackground, IsWhatNobodyCovers) {
@@ -31,25 +31,25 @@ TEST(StillBackground, IsWhatNobodyCovers) {
 
 TEST(StillBackground, DoesNotKnowWhatIsAlwaysCovered) {
   const MaskedClip clip(12);
-  std::vector<CoveredPicture> pictures = Covered(clip);
-  for (size_t t = 0; t < pictures.size(); ++t) {
-    pictures[t].covered[7] = 1;
-    pictures[t].covered[9] = t < 8 ? 1 : 0;  // four pictures show it
+  std::vector<CoveredImage> images = Covered(clip);
+  for (size_t t = 0; t < images.size(); ++t) {
+    images[t].covered[7] = 1;
+    images[t].covered[9] = t < 8 ? 1 : 0;  // four pictures show it
   }
-  const auto background = FindStillBackground(pictures);
+  const auto background = FindStillBackground(images);
   ASSERT_TRUE(background.has_value());
   EXPECT_EQ(background->sigma[7], 0);
   EXPECT_EQ(background->sigma[9], 0);
   EXPECT_EQ(background->colours.at(7, 0), Colour{});
-  EXPECT_TRUE(FindStillBackground(pictures, {.fewest = 4})->sigma[9] > 0);
+  EXPECT_TRUE(FindStillBackground(images, {.fewest = 4})->sigma[9] > 0);
 }
 
 TEST(StillBackground, EdgesAndWhatFlickersAreLessSure) {
   MaskedClip clip(15);
-  for (size_t t = 0; t < clip.pictures.size(); ++t) {
+  for (size_t t = 0; t < clip.images.size(); ++t) {
     for (int x = 0; x < MaskedClip::kWidth; ++x) {
-      for (int c = 0; c < 3; ++c) clip.pictures[t].pixel(x, 3)[c] = static_cast<uint8_t>(90 + 10 * (t % 3));
-      for (int c = 0; c < 3; ++c) clip.pictures[t].pixel(x, 8)[c] = x < 80 ? 40 : 220;
+      for (int c = 0; c < 3; ++c) clip.images[t].pixel(x, 3)[c] = static_cast<uint8_t>(90 + 10 * (t % 3));
+      for (int c = 0; c < 3; ++c) clip.images[t].pixel(x, 8)[c] = x < 80 ? 40 : 220;
     }
   }
   const auto background = FindStillBackground(Covered(clip));
@@ -59,33 +59,33 @@ TEST(StillBackground, EdgesAndWhatFlickersAreLessSure) {
   EXPECT_GT(sigma(80, 8), 25) << "a third of a step of 90 a pixel";
 }
 
-TEST(StillBackground, IsNoneOfACameraThatMovesOrOfTooFewPictures) {
+TEST(StillBackground, IsNoneOfACameraThatMovesOrOfTooFewImages) {
   EXPECT_FALSE(FindStillBackground(Covered(MaskedClip(20, 2))).has_value());
   EXPECT_FALSE(FindStillBackground(Covered(MaskedClip(4))).has_value());
   EXPECT_FALSE(FindStillBackground({}).has_value());
-  std::vector<CoveredPicture> hidden = Covered(MaskedClip(20));
-  for (CoveredPicture& seen : hidden) std::fill(seen.covered.begin(), seen.covered.begin() + 11000, uint8_t{1});
+  std::vector<CoveredImage> hidden = Covered(MaskedClip(20));
+  for (CoveredImage& seen : hidden) std::fill(seen.covered.begin(), seen.covered.begin() + 11000, uint8_t{1});
   EXPECT_FALSE(FindStillBackground(hidden).has_value()) << "more than half is never seen";
 }
 
 TEST(StillBackground, IsTheSameForAnyThreads) {
-  const std::vector<CoveredPicture> pictures = Covered(MaskedClip(13));
-  const auto one = FindStillBackground(pictures);
+  const std::vector<CoveredImage> images = Covered(MaskedClip(13));
+  const auto one = FindStillBackground(images);
   for (const int threads : {2, 5}) {
-    const auto other = FindStillBackground(pictures, {.num_threads = threads});
+    const auto other = FindStillBackground(images, {.num_threads = threads});
     EXPECT_EQ(one->colours, other->colours);
     EXPECT_EQ(one->sigma, other->sigma);
   }
 }
 
-TEST(StillBackground, RefusesPicturesThatDoNotFit) {
-  std::vector<CoveredPicture> pictures = Covered(MaskedClip(6));
-  pictures[3].covered.pop_back();
-  EXPECT_THROW(FindStillBackground(pictures), std::invalid_argument);
-  pictures = Covered(MaskedClip(6));
-  pictures[5].picture = Image(8, 8);
-  EXPECT_THROW(FindStillBackground(pictures), std::invalid_argument);
-  EXPECT_THROW(FindStillBackground(pictures, {.fewest = 0}), std::invalid_argument);
+TEST(StillBackground, RefusesImagesThatDoNotFit) {
+  std::vector<CoveredImage> images = Covered(MaskedClip(6));
+  images[3].covered.pop_back();
+  EXPECT_THROW(FindStillBackground(images), std::invalid_argument);
+  images = Covered(MaskedClip(6));
+  images[5].image = Image(8, 8);
+  EXPECT_THROW(FindStillBackground(images), std::invalid_argument);
+  EXPECT_THROW(FindStillBackground(images, {.fewest = 0}), std::invalid_argument);
 }
 
 }  // namespace

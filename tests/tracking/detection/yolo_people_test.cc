@@ -26,7 +26,7 @@ class Output {
 };
 
 /// The image is twice as large as the letterbox, in which it begins at (10, 20).
-PictureCrop HalfSize() { return {.width = 640, .height = 640, .gain = {0.5, 0.5}, .shift = {10, 20}}; }
+ImageCrop HalfSize() { return {.width = 640, .height = 640, .gain = {0.5, 0.5}, .shift = {10, 20}}; }
 
 TEST(DecodeYolo, BoxesAndLandmarksComeBackToTheImage) {
   Output output(5 + 6, 3);

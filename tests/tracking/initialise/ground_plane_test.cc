@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vertical and the ground from feet whose truth is known: tilted cameras, noise in depth, and clips without ground.
+// Vertical and ground from feet with known truth: tilted cameras, noise in depth, and clips without ground.
 #include "tracking/initialise/ground_plane.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From 2D landmarks to lifted frames: phases, mirror, cuts, the mean of hypotheses, odd clips. The network is random
-// here: what it predicts is another test's business.
+// From 2D landmarks to lifted frames: phases, mirror, cuts, the mean of hypotheses, unusual clips. The network is
+// random here; its predictions are tested elsewhere.
 #include "tracking/lifter/lift_keypoints.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Somebody who stands behind somebody else, on bodies whose places are known.
+// Occlusion of one person by another, with bodies at known positions.
 #include "tracking/people/occlusion.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(Occlusion, TheOneBehindKeepsAFifthOfWhatIsHiddenAndTheOneInFrontEverything)
   KeypointSequence front_seen = Seen(front), behind_seen = Seen(behind);
   const KeypointSequence before = behind_seen;
   const std::vector<HiddenCounts> counts =
-      TakeWeightFromHidden({InScene(front, &front_seen), InScene(behind, &behind_seen)}, 1);
+      DownweightOccluded({InScene(front, &front_seen), InScene(behind, &behind_seen)}, 1);
   EXPECT_FALSE(counts[0].any());
   EXPECT_EQ(counts[1].frames, 2);
   EXPECT_TRUE(std::all_of(front_seen.points.begin(), front_seen.points.end(),
@@ -84,7 +84,7 @@ TEST(Occlusion, OtherMomentsPlacesAndPeopleWithoutATrackHideNothing) {
   KeypointSequence a = Seen(front), b = Seen(later), c = Seen(aside);
   const std::vector<PersonInScene> people = {
       InScene(front, &a), InScene(later, &b), InScene(aside, &c), {.body = &BuiltinBody()}};
-  for (const HiddenCounts& counts : TakeWeightFromHidden(people, 2)) EXPECT_FALSE(counts.any());
+  for (const HiddenCounts& counts : DownweightOccluded(people, 2)) EXPECT_FALSE(counts.any());
 }
 
 TEST(Occlusion, LabelsBehindABodyAreUnknownAndThoseBesideItStay) {
@@ -101,7 +101,7 @@ TEST(Occlusion, LabelsBehindABodyAreUnknownAndThoseBesideItStay) {
   labels.frames = {image};
   labels.AsMask();
   const PersonInScene rear{.body = &BuiltinBody(), .track = &behind, .part_labels = &labels};
-  const std::vector<HiddenCounts> counts = TakeWeightFromHidden({InScene(front, nullptr), rear}, 1);
+  const std::vector<HiddenCounts> counts = DownweightOccluded({InScene(front, nullptr), rear}, 1);
   EXPECT_GT(counts[1].pixels, 1000);
   int kept = 0;
   for (int y = 0; y < 480; ++y) {
@@ -129,7 +129,7 @@ TEST(Occlusion, IsTheSameForAnyNumberOfThreads) {
   std::vector<float> expected;
   for (const int threads : {1, 2, 5}) {
     KeypointSequence a = Seen(front), b = Seen(behind);
-    TakeWeightFromHidden({InScene(front, &a), InScene(behind, &b)}, threads);
+    DownweightOccluded({InScene(front, &a), InScene(behind, &b)}, threads);
     std::vector<float> got;
     for (const Keypoint& p : b.points) got.push_back(p.confidence);
     if (threads == 1) expected = got;

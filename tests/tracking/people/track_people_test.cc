@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two people before one camera whose focal length nobody says.
+// Two people before one camera of unknown focal length.
 #include "tracking/people/track_people.h"
 
 #include <gtest/gtest.h>
@@ -179,7 +179,7 @@ TEST(TrackPeople, FeetAreComparedAtOneFocalLength) {
     EXPECT_EQ(person.track.camera.fx, scene.focal_px);
     EXPECT_EQ(person.summary.focal_log_sigma, scene.focal_log_sigma);
   }
-  // Where nobody looks for feet there is nothing to compare.
+  // Without ground estimation there is nothing to compare.
   fits = 0;
   options.ground = GroundOptions::Off();
   TrackPeople(inputs, options);

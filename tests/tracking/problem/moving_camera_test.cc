@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame whose camera moves: the change of variables against the same frame seen by a camera that stands still, its
-// derivatives against central differences, and both engines on a clip.
+// A frame of a moving camera: the change of variables against the same frame of a static camera, its derivatives
+// against central differences, and both engines on a clip.
 #include "tracking/problem/moving_camera.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies of a stature that is given: the built-in body, whole.
+// Bodies of a given stature: the complete built-in body.
 #include "tracking/problem/stature.h"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Users' own cost functions: derivatives through the problem, both engines, what they do to a track, what is refused.
+// User cost functions in the problem: derivatives, both engines, couplings of frames, moving cameras.
 #include "tracking/problem/user_term.h"
 
 #include <ceres/autodiff_cost_function.h>
-#include <ceres/dynamic_autodiff_cost_function.h>
 #include <ceres/loss_function.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,15 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/body/builtin_body.h"
-#include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
-#include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/scene/camera_path.h"
 #include "tests/support/dense_chain.h"
 #include "tests/support/sequence_scene.h"
-#include "tracking/clip/clip_fit.h"
-#include "tracking/live/track_live.h"
+#include "tests/tracking/problem/user_term_kinds.h"
 #include "tracking/problem/moving_camera.h"
 #include "tracking/problem/user_cost.h"
 #include "tracking/solvers/chain/chain_problem.h"
@@ -32,182 +26,10 @@
 namespace bodyloom::user_term_test {
 namespace {
 
+using namespace user_term_kinds;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-/// r = (x − target)/σ of a point or a translation.
-struct PullTo {
-  Vector3d target;
-  double sigma;
-  template <typename T>
-  bool operator()(const T* x, T* r) const {
-    for (int c = 0; c < 3; ++c) r[c] = (x[c] - target[c]) / sigma;
-    return true;
-  }
-};
-
-/// The distance of two points, which no linear residual can express.
-struct Apart {
-  double metres, sigma;
-  template <typename T>
-  bool operator()(const T* a, const T* b, T* r) const {
-    const Eigen::Matrix<T, 3, 1> d(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-    r[0] = (d.norm() - metres) / sigma;
-    return true;
-  }
-};
-
-/// The translation, and two joints bent like each other's mirror image, by two entries of their rotations.
-struct AlikeAndAt {
-  Vector3d target;
-  template <typename T>
-  bool operator()(const T* translation, const T* left, const T* right, T* r) const {
-    for (int c = 0; c < 3; ++c) r[c] = (translation[c] - target[c]) / 0.1;
-    r[3] = (left[1] + right[1]) / 0.1;
-    r[4] = (left[5] - right[5]) / 0.1;  // entry (1, 2): row by row
-    return true;
-  }
-};
-
-/// Two landmarks of two frames: the first keeps its velocity, the second's distance to it does not change.
-struct Moves {
-  Vector3d step;
-  template <typename T>
-  bool operator()(const T* a0, const T* b0, const T* a1, const T* b1, T* r) const {
-    const Eigen::Map<const Eigen::Matrix<T, 3, 1>> A0(a0), B0(b0), A1(a1), B1(b1);
-    for (int c = 0; c < 3; ++c) r[c] = (A1[c] - A0[c] - step[c]) / 0.02;
-    r[3] = ((A1 - B1).squaredNorm() - (A0 - B0).squaredNorm()) / 0.03;
-    return true;
-  }
-};
-
-UserTerm OnLandmarks(const std::string& name, const std::vector<std::string>& landmarks, UserTerm::CostOfFrame cost,
-                     std::shared_ptr<ceres::LossFunction> loss = nullptr) {
-  UserTerm term{.name = name, .cost = std::move(cost), .loss = std::move(loss)};
-  for (const std::string& landmark : landmarks) term.inputs.push_back(TermInput::Landmark(landmark));
-  return term;
-}
-
-UserTerm OnPose(const std::string& name, bool translation, const std::vector<int>& joints, UserTerm::CostOfFrame cost,
-                std::shared_ptr<ceres::LossFunction> loss = nullptr) {
-  UserTerm term{.name = name, .cost = std::move(cost), .loss = std::move(loss)};
-  if (translation) term.inputs.push_back(TermInput::Translation());
-  for (const int joint : joints) term.inputs.push_back(TermInput::Rotation(joint));
-  return term;
-}
-
-UserTerm OnNeighbours(const std::string& name, const std::vector<std::string>& landmarks, UserTerm::CostOfFrame cost,
-                      std::shared_ptr<ceres::LossFunction> loss = nullptr) {
-  UserTerm term = OnLandmarks(name, landmarks, std::move(cost), std::move(loss));
-  for (const std::string& landmark : landmarks) term.inputs.push_back(TermInput::Landmark(landmark, 1));
-  return term;
-}
-
-/// A surface point that should be at a pixel, with the shape and the focal length in it: everything that a frame has.
-struct SeenAt {
-  Eigen::Vector2d pixel;
-  template <typename T>
-  bool operator()(T const* const* blocks, T* r) const {
-    const T *x = blocks[0], *betas = blocks[1], *focal = blocks[2];
-    r[0] = (focal[0] * x[0] / x[2] + 640.0 - pixel.x()) / 5.0;
-    r[1] = (focal[0] * x[1] / x[2] + 360.0 - pixel.y()) / 5.0;
-    r[2] = (betas[0] - 0.5) / 0.3;
-    return true;
-  }
-};
-
-UserTerm Seen(const BodyModel& body) {
-  const int B = body.num_betas();
-  UserTerm term{.name = "seen"};
-  term.inputs = {TermInput::Surface({body.num_faces() / 3, Vector3d(0.2, 0.5, 0.3)}), TermInput::Betas(),
-                 TermInput::FocalLength()};
-  term.cost = [B](int t) {
-    auto cost = std::make_shared<ceres::DynamicAutoDiffCostFunction<SeenAt>>(new SeenAt{{650.0 + 3 * t, 340.0}});
-    for (const int size : {3, B, 1}) cost->AddParameterBlock(size);
-    cost->SetNumResiduals(3);
-    return cost;
-  };
-  return term;
-}
-
-/// A wrist comes back to where it was, two frames and five frames later, and as bent as it was.
-struct ComesBack {
-  template <typename T>
-  bool operator()(const T* a, const T* b, const T* c, const T* R0, const T* R5, T* r) const {
-    for (int i = 0; i < 3; ++i) r[i] = (a[i] - b[i]) / 0.5;
-    for (int i = 0; i < 3; ++i) r[3 + i] = (a[i] - c[i]) / 0.5;
-    r[6] = R0[5] - R5[5];
-    return true;
-  }
-};
-
-UserTerm Loop(const BodyModel& body, std::shared_ptr<ceres::LossFunction> loss = nullptr) {
-  const int elbow = body.FindJoint("l_elbow");
-  UserTerm term{.name = "loop", .loss = std::move(loss)};
-  term.inputs = {TermInput::Landmark("left_wrist"), TermInput::Landmark("left_wrist", 2),
-                 TermInput::Landmark("left_wrist", 5), TermInput::Rotation(elbow), TermInput::Rotation(elbow, 5)};
-  term.cost = [](int t) -> std::shared_ptr<const ceres::CostFunction> {
-    if (t > 2) return nullptr;
-    return std::make_shared<ceres::AutoDiffCostFunction<ComesBack, 7, 3, 3, 3, 9, 9>>(new ComesBack);
-  };
-  return term;
-}
-
-UserTerm Pull(std::shared_ptr<ceres::LossFunction> loss = nullptr) {
-  return OnLandmarks(
-      "pull", {"left_wrist"},
-      [](int t) -> std::shared_ptr<const ceres::CostFunction> {
-        if (t == 1) return nullptr;
-        return std::make_shared<ceres::AutoDiffCostFunction<PullTo, 3, 3>>(
-            new PullTo{Vector3d(0.4, -0.3 + 0.02 * t, 3.5), 0.05});
-      },
-      std::move(loss));
-}
-
-UserTerm Distance() {
-  return OnLandmarks("distance", {"left_wrist", "right_ankle"}, [](int) {
-    return std::make_shared<ceres::AutoDiffCostFunction<Apart, 1, 3, 3>>(new Apart{0.9, 0.2});
-  });
-}
-
-UserTerm Pose(const BodyModel& body, CameraKnowledge knowledge = CameraKnowledge::kKnown) {
-  const Vector3d target = knowledge == CameraKnowledge::kWeak ? Vector3d(5.4, 0.2, -0.1) : Vector3d(0.2, 0.1, 3.8);
-  return OnPose("alike", true, {body.FindJoint("l_elbow"), body.FindJoint("r_elbow")}, [target](int) {
-    return std::make_shared<ceres::AutoDiffCostFunction<AlikeAndAt, 5, 3, 9, 9>>(new AlikeAndAt{target});
-  });
-}
-
-UserTerm Neighbours(std::shared_ptr<ceres::LossFunction> loss = nullptr) {
-  return OnNeighbours(
-      "moves", {"left_wrist", "nose"},
-      [](int) {
-        return std::make_shared<ceres::AutoDiffCostFunction<Moves, 4, 3, 3, 3, 3>>(new Moves{Vector3d(0.03, 0.01, 0)});
-      },
-      std::move(loss));
-}
-
-std::vector<UserTerm> AllKinds(const BodyModel& body, CameraKnowledge knowledge) {
-  return {Pull(std::make_shared<ceres::CauchyLoss>(2.0)),
-          Distance(),
-          Pose(body, knowledge),
-          Neighbours(std::make_shared<ceres::HuberLoss>(1.5)),
-          Seen(body),
-          Loop(body, std::make_shared<ceres::CauchyLoss>(3.0))};
-}
-
-/// A clip of the built-in body from 2D joints, tracked by an engine with these terms.
-TrackSequenceResult TrackWith(const SynthClip& clip, SequenceSolver solver, const std::vector<UserTerm>& terms) {
-  TrackSequenceInput input;
-  input.body = &BuiltinBody();
-  input.keypoints = &clip.keypoints;
-  input.prior = &BuiltinPosePrior();
-  input.camera = clip.truth.camera;
-  TrackSequenceOptions options;
-  options.solver = solver;
-  options.user_terms = terms;
-  return FitClip(input, options);
-}
 
 TEST(UserTerm, DerivativesMatchDifferencesThroughTheProblem) {
   for (CameraKnowledge knowledge : {CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal, CameraKnowledge::kWeak}) {
@@ -436,130 +258,6 @@ TEST(UserTerm, ACostThatCannotBeEvaluatedIsAFailureNotACrash) {
     options.solver = solver;
     EXPECT_EQ(SolveSequence(&scene->problem, options).status, SolveStatus::kFailure);
   }
-}
-
-TEST(UserTerm, MovesTheWristOfATrack) {
-  SynthClipOptions options;
-  options.dense_per_frame = 0;
-  const SynthClip clip = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 12, 15), options);
-  const TrackSequenceResult before = TrackWith(clip, SequenceSolver::kChain, {});
-  ASSERT_TRUE(before.summary.IsUsable());
-  const auto target = [&](int t) -> Vector3d {
-    return Vector3d(before.track.coco17[t].row(9)) + Vector3d(0, -0.15, 0);
-  };
-  const auto term = OnLandmarks("wrist", {"left_wrist"}, [&](int t) {
-    return std::make_shared<ceres::AutoDiffCostFunction<PullTo, 3, 3>>(new PullTo{target(t), 0.02});
-  });
-  for (SequenceSolver solver : {SequenceSolver::kChain, SequenceSolver::kCeres}) {
-    const TrackSequenceResult after = TrackWith(clip, solver, {term});
-    ASSERT_TRUE(after.summary.IsUsable()) << after.summary.message;
-    for (int t = 0; t < 12; ++t) {
-      EXPECT_LT((Vector3d(after.track.coco17[t].row(9)) - target(t)).norm(), 0.05) << t;
-      // The other side's ankle stays where it was seen (its depth hardly is).
-      EXPECT_LT((after.track.coco17[t].row(16) - before.track.coco17[t].row(16)).head(2).norm(), 0.05) << t;
-    }
-    double sum = 0;
-    for (const TermCost& cost : after.summary.costs) sum += cost.cost;
-    EXPECT_NEAR(sum, after.summary.final_cost, 1e-9 * sum);
-    EXPECT_TRUE(std::any_of(after.summary.costs.begin(), after.summary.costs.end(),
-                            [](const TermCost& cost) { return cost.term == "wrist" && cost.cost > 0; }));
-    EXPECT_TRUE(std::any_of(after.summary.plan.begin(), after.summary.plan.end(),
-                            [](const PlanEntry& entry) { return entry.what == "term 'wrist'" && entry.runs; }));
-  }
-}
-
-/// Entry (1, 2) of a rotation.
-struct Bent {
-  template <typename T>
-  bool operator()(const T* R, T* r) const {
-    r[0] = (R[5] - 0.3) / 0.01;
-    return true;
-  }
-};
-
-TEST(UserTerm, EstimatesTheJointsThatItReads) {
-  SynthClipOptions options;
-  options.dense_per_frame = 0;
-  const SynthClip clip = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 6, 15), options);
-  const int hand = BuiltinBody().FindJoint("l_hand");
-  ASSERT_GE(hand, 0);
-  const Vector3d held = TrackWith(clip, SequenceSolver::kChain, {}).track.motion.poses.row(2).segment(3 * hand, 3);
-  EXPECT_EQ(held.norm(), 0);
-  const auto term = OnPose("hand", false, {hand},
-                           [](int) { return std::make_shared<ceres::AutoDiffCostFunction<Bent, 1, 9>>(new Bent); });
-  const Vector3d bent = TrackWith(clip, SequenceSolver::kChain, {term}).track.motion.poses.row(2).segment(3 * hand, 3);
-  EXPECT_NEAR(bent.x(), -std::asin(0.3), 0.02);
-}
-
-std::string Refusal(const UserTerm& term) {
-  const auto scene = MakeSequenceScene({});
-  try {
-    AddUserTerms(std::vector<UserTerm>{term}, &scene->problem);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(UserTerm, RefusalsNameTheTermInOneLine) {
-  using testing::AllOf;
-  using testing::HasSubstr;
-  using testing::Not;
-  const auto one_line = Not(HasSubstr("\n"));
-  const auto cost = [](int) {
-    return std::make_shared<ceres::AutoDiffCostFunction<PullTo, 3, 3>>(new PullTo{Vector3d::Zero(), 1});
-  };
-  EXPECT_THAT(Refusal(OnLandmarks("a", {"left_wrist", "nose"}, cost)),
-              AllOf(HasSubstr("term 'a', frame 0"), HasSubstr("blocks of 3; expected blocks of 3, 3"), one_line));
-  EXPECT_THAT(Refusal(OnNeighbours("b", {"nose"}, cost)), AllOf(HasSubstr("expected blocks of 3, 3"), one_line));
-  EXPECT_THAT(Refusal(OnPose("c", false, {4}, cost)), AllOf(HasSubstr("expected blocks of 9"), one_line));
-  EXPECT_THAT(Refusal(OnPose("d", false, {99}, cost)), AllOf(HasSubstr("'d': joint 99"), one_line));
-  EXPECT_THAT(Refusal(OnPose("e", false, {-1}, cost)), AllOf(HasSubstr("joint -1"), one_line));
-  EXPECT_THAT(Refusal(OnLandmarks("f", {"tail"}, cost)), AllOf(HasSubstr("no landmark 'tail'"), one_line));
-  EXPECT_THAT(Refusal(OnLandmarks("g", {}, cost)), AllOf(HasSubstr("reads nothing"), one_line));
-  EXPECT_THAT(Refusal(OnLandmarks("h", {"nose"}, nullptr)), AllOf(HasSubstr("no cost function"), one_line));
-  EXPECT_EQ(Refusal(OnLandmarks("i", {"nose"}, cost)), "");
-}
-
-TEST(UserTerm, MoreThanTheShapeIsRefusedWhereItIsHeld) {
-  const auto scene = MakeSequenceScene({});
-  scene->problem.layout =
-      FrameLayout::Make(scene->body, CameraKnowledge::kKnown, scene->problem.layout.camera, AllJoints(scene->body), 0);
-  scene->problem.betas.resize(0);
-  EXPECT_THROW(AddUserTerms(std::vector<UserTerm>{Seen(scene->body)}, &scene->problem), std::invalid_argument);
-}
-
-TEST(UserTerm, LiveTrackingTakesTermsOfOneFrame) {
-  LiveTrackerOptions options;
-  std::string why;
-  options.solve.user_terms = {Pull()};
-  EXPECT_TRUE(options.IsValid(&why)) << why;
-  options.solve.user_terms = {Neighbours()};
-  EXPECT_FALSE(options.IsValid(&why));
-  EXPECT_THAT(why, testing::HasSubstr("the term 'moves' couples frames"));
-  options.solve.user_terms.clear();
-  options.solve.solver = SequenceSolver::kCeres;
-  EXPECT_FALSE(options.IsValid(&why));
-  EXPECT_THAT(why, testing::HasSubstr("chain engine, not by ceres"));
-}
-
-TEST(UserTerm, MovesTheWristLive) {
-  SynthClipOptions synth;
-  synth.dense_per_frame = 0;
-  const SynthClip clip = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 12, 15), synth);
-  TrackSequenceInput input;
-  input.body = &BuiltinBody();
-  input.keypoints = &clip.keypoints;
-  input.prior = &BuiltinPosePrior();
-  input.camera = clip.truth.camera;
-  LiveTrackerOptions options;
-  const Track before = TrackLive(input, options).track;
-  const auto target = [&](int t) -> Vector3d { return Vector3d(before.coco17[t].row(9)) + Vector3d(0, -0.15, 0); };
-  options.solve.user_terms = {OnLandmarks("wrist", {"left_wrist"}, [&](int t) {
-    return std::make_shared<ceres::AutoDiffCostFunction<PullTo, 3, 3>>(new PullTo{target(t), 0.02});
-  })};
-  const Track after = TrackLive(input, options).track;
-  for (int t = 0; t < 12; ++t) EXPECT_LT((Vector3d(after.coco17[t].row(9)) - target(t)).norm(), 0.06) << t;
 }
 
 }  // namespace

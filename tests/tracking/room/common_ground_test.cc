@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sizes of people from feet on one plane: closed forms, a search over all sizes, and scenes that cannot tell.
+// Sizes of people from feet on one plane: closed forms, a search over all sizes, and scenes that do not determine them.
 #include "tracking/room/common_ground.h"
 
 #include <gtest/gtest.h>
@@ -175,8 +175,8 @@ TEST(CommonGround, SizesThatAreKeptAreNotSought) {
   EXPECT_EQ(ground.why.find("too near"), std::string::npos) << ground.why;
 }
 
-/// What the header says, written once more: for sizes that are given the rest is nearly linear, and reweighted least
-/// squares from several heights finds it.
+/// Reference implementation of the header's definition: for given sizes the rest is nearly linear and is solved by
+/// reweighted least squares from several heights.
 class Twin {
  public:
   Twin(const std::vector<StandingPerson>& people, const Vector3d& up) : people_(people), up_(up) {
@@ -194,8 +194,8 @@ class Twin {
     }
     return cost;
   }
-  [[nodiscard]] double LeastCost(const std::vector<double>& log_size, double height) const {
-    double least = std::numeric_limits<double>::infinity();
+  [[nodiscard]] double MinCost(const std::vector<double>& log_size, double height) const {
+    double minimum = std::numeric_limits<double>::infinity();
     for (const double times : {0.8, 0.9, 1.0, 1.1, 1.2}) {
       Vector3d x(0, 0, times * height);  // up₀ + a e₁ + b e₂, h
       for (int pass = 0; pass < 25; ++pass) {
@@ -214,9 +214,9 @@ class Twin {
         x = H.ldlt().solve(rhs);
       }
       const double length = (up_ + x[0] * e1_ + x[1] * e2_).norm();
-      least = std::min(least, Cost(log_size, (up_ + x[0] * e1_ + x[1] * e2_) / length, x[2] / length));
+      minimum = std::min(minimum, Cost(log_size, (up_ + x[0] * e1_ + x[1] * e2_) / length, x[2] / length));
     }
-    return least;
+    return minimum;
   }
 
  private:
@@ -255,17 +255,17 @@ TEST_P(NoSizesOnAGridCostLess, ThanThoseThatAreFound) {
     const CommonGround ground = FindCommonGround(people, up);
     ASSERT_TRUE(ground.found) << ground.why;
     const Twin twin(people, up);
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     Vector2d best;
     constexpr double kStep = 0.01;
     for (double a = -0.24; a <= 0.24; a += kStep) {
       for (double b = -0.24; b <= 0.24; b += kStep) {
-        const double cost = twin.LeastCost({a, b}, height);
-        if (cost < least) least = cost, best = {a, b};
+        const double cost = twin.MinCost({a, b}, height);
+        if (cost < minimum) minimum = cost, best = {a, b};
       }
     }
     const std::vector<double> log_size = {std::log(ground.size[0]), std::log(ground.size[1])};
-    EXPECT_LE(twin.Cost(log_size, ground.ground.up, ground.ground.camera_height_m), least + 1e-6) << seed;
+    EXPECT_LE(twin.Cost(log_size, ground.ground.up, ground.ground.camera_height_m), minimum + 1e-6) << seed;
     EXPECT_NEAR(log_size[0], best[0], 1.5 * kStep) << seed;
     EXPECT_NEAR(log_size[1], best[1], 1.5 * kStep) << seed;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes joined from people's own fits: closed forms.
+// Scenes merged from the fits of several people: closed forms.
 #include "tracking/room/shared_scene.h"
 
 #include <gtest/gtest.h>
@@ -167,10 +167,10 @@ TEST(SharedScene, OnePersonsGroundIsTheirOwn) {
 
 TEST(SharedScene, SomebodyOnAStageKeepsTheirSizeAndTheMostFeetHaveTheGround) {
   const Vector3d up(0, -1, 0);
-  const SharedScene most = JoinScenes({PersonOnGround(up, 1, 1.5, 6), PersonOnGround(up, 1, 0.7, 3)}, {});
-  ASSERT_TRUE(most.ground.has_plane) << most.why;
-  EXPECT_EQ(most.ground.camera_height_m, 1.5);
-  EXPECT_EQ(most.size, (std::vector<double>{1, 1}));
+  const SharedScene maximum = JoinScenes({PersonOnGround(up, 1, 1.5, 6), PersonOnGround(up, 1, 0.7, 3)}, {});
+  ASSERT_TRUE(maximum.ground.has_plane) << maximum.why;
+  EXPECT_EQ(maximum.ground.camera_height_m, 1.5);
+  EXPECT_EQ(maximum.size, (std::vector<double>{1, 1}));
   const SharedScene none = JoinScenes({PersonOnGround(up, 1, 1.5, 3), PersonOnGround(up, 1, 0.7, 3)}, {});
   EXPECT_FALSE(none.ground.has_plane);
   EXPECT_NE(none.why.find("one plane"), std::string::npos) << none.why;

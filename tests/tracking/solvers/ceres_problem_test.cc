@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ceres::Problem of a clip: the same cost, gradient and covariance as the chain engine has, by term and by name.
+// The ceres::Problem of a clip: cost, gradient and covariance equal to the chain engine's, by term and by name.
 #include "tracking/solvers/ceres_problem.h"
 
 #include <ceres/ceres.h>

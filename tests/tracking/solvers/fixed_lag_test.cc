@@ -165,7 +165,7 @@ TEST(FixedLag, CovarianceEqualsTheBatchsWhenEverythingIsLinear) {
     int visited = 0;
     ASSERT_TRUE(lag.VisitCovariance(0, open, [&](int i, const MatrixXd& P) {
       const MatrixXd& whole = expected[t + 1 - open + i];
-      // What holds frames that nothing holds, 1e-6, is added again with every frame that leaves.
+      // The regularisation of unconstrained frames, 1e-6, is added again with every frame that leaves.
       EXPECT_LT((P - whole).norm(), 1e-4 * whole.norm()) << "frame " << t << " at " << i;
       ++visited;
     }));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which second of a clip fits worst, and which term pulls there. The table of costs itself: ceres_problem_test.cc.
+// The second of a clip with the worst fit and the dominant term there. The table of costs itself:
+// ceres_problem_test.cc.
 #include "tracking/solvers/term_costs.h"
 
 #include <gtest/gtest.h>

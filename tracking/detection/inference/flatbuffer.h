@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// FlatBuffers, walked where they lie: tables, vectors and text by field number, without the schema and without a copy.
+/// Reads FlatBuffers in place: tables, vectors and text by field number, without the schema and without a copy.
 ///
 /// A file begins with the place of its root table (uint32, bytes from there on) and four letters that name the format.
 /// A table begins with an int32: its own place less this number is its list of fields (uint16: bytes of the list, bytes
@@ -8,8 +8,8 @@
 /// little endian. Source: google/flatbuffers, docs "FlatBuffer internals".
 ///
 /// Every place and count is checked before it is used; one that leaves the file throws std::runtime_error "name: table
-/// at byte N, field N: what was found, expected what". Nothing is followed that was not asked for, so a circle of
-/// offsets is harmless; but parts may be shared, so what a caller copies he must bound himself.
+/// at byte N, field N: what was found, expected what". Offsets are followed only on request, so cycles are harmless;
+/// but parts may be shared, so callers must bound the total size of their copies.
 #pragma once
 
 #include <bit>
@@ -26,7 +26,7 @@ namespace bodyloom {
 
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie");
 
-/// Numbers that lie one behind the other in the file; its bytes must outlive it.
+/// View of an array of numbers in the file; the file's bytes must outlive it.
 template <typename T>
 class FlatNumbers {
  public:
@@ -83,7 +83,7 @@ class FlatTable {
   FlatTable(std::string_view file, size_t at, const std::string& name);
   /// Place in the file of a field that holds `bytes` bytes; 0 when the table lacks it.
   [[nodiscard]] size_t FieldAt(int field, size_t bytes) const;
-  /// Where the offset at this place leads to.
+  /// Target of the offset at this position.
   [[nodiscard]] size_t Follow(size_t at, int field) const;
   [[nodiscard]] std::string_view Vector(int field, size_t element_bytes) const;
   [[noreturn]] void Fail(int field, const std::string& message) const;

@@ -8,7 +8,7 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kMostNumbers = size_t{1} << 27;
+constexpr size_t kMaxNumbers = size_t{1} << 27;
 
 const GraphAttribute* FindAttribute(const GraphNode& node, const std::string& key) {
   const auto at = node.attributes.find(key);
@@ -40,7 +40,7 @@ size_t GraphShapeSize(const std::vector<int64_t>& shape) {
   size_t product = 1;
   for (const int64_t n : shape) {
     if (n < 0) throw std::runtime_error("a tensor of " + GraphShapeText(shape));
-    if (n > 0 && product > kMostNumbers / size_t(n)) {
+    if (n > 0 && product > kMaxNumbers / size_t(n)) {
       throw std::runtime_error(Concatenate("a tensor of ", GraphShapeText(shape), ", expected at most 2^27 numbers"));
     }
     product *= size_t(n);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Networks as graphs of operators: what readers make of files (onnx_reader.h, tflite_reader.h) and of a picture U-Net
-/// (picture_unet_runner.h), and what graph_executor.h runs.
+/// Networks as graphs of operators. They are built from files (onnx_reader.h, tflite_reader.h) or from the weights of
+/// an image U-Net (image_unet_runner.h), and run by graph_executor.h.
 ///
 /// Operators have the names, inputs and attributes of the ONNX standard (github.com/onnx/onnx, Operators.md), in the
 /// version `opset`. Images are N×C×H×W; in a graph with `channels_last` they are N×H×W×C, kernels of convolutions
@@ -19,7 +19,7 @@
 
 namespace bodyloom {
 
-/// Numbers that nobody changes; copies share them.
+/// Immutable array of numbers; copies share the memory.
 template <typename T>
 class SharedNumbers {
  public:
@@ -43,9 +43,9 @@ class SharedNumbers {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
   }
   [[nodiscard]] std::vector<T> Copy() const { return {begin(), end()}; }
-  /// How many hold these numbers.
+  /// Number of objects that share these numbers.
   [[nodiscard]] long num_holders() const { return owner_.use_count(); }
-  /// To write other numbers in place of these, which no other holder may read any more.
+  /// Mutable access for overwriting the numbers. No other holder may read them afterwards.
   [[nodiscard]] std::shared_ptr<T[]> Overwritten() const {
     return {std::const_pointer_cast<void>(owner_), const_cast<T*>(data_)};
   }
@@ -112,8 +112,8 @@ struct GraphNode {
 struct OperatorGraph {
   struct Tensor {
     std::string name;            ///< printable
-    std::vector<int64_t> shape;  ///< of an input and of a constant; of others where the file says it; −1: any length
-    GraphTensor constant;        ///< without numbers for what is computed
+    std::vector<int64_t> shape;  ///< of an input and of a constant; of others if the file has it; −1: any length
+    GraphTensor constant;        ///< without numbers for computed tensors
   };
 
   std::string name;   ///< of its file, for messages

@@ -14,7 +14,7 @@
 namespace bodyloom {
 namespace {
 
-/// Zeros around rows and columns go into the convolutions that read them.
+/// Folds Pad of rows and columns into the padding of the convolutions that read it.
 void FoldPads(const OperatorGraph& graph, std::vector<GraphNode>* nodes) {
   std::vector<const GraphNode*> writer(graph.tensors.size(), nullptr);
   const size_t row = graph.channels_last ? 1 : 2, column = row + 1;
@@ -107,16 +107,16 @@ class GraphExecutor::Program {
   }
 
  private:
-  /// One thing that runs.
+  /// An operator with those fused into it.
   struct Step {
     GraphNode node;  ///< its outputs are those of the last operator that it does
     OperatorFunction run = nullptr;
     std::optional<OnednnOperator> onednn;  ///< instead of `run`
     bool in_place = false;                 ///< writes to the memory of its input 1
-    std::vector<int> last;                 ///< tensors that nobody reads later
+    std::vector<int> last;                 ///< tensors that are not read later
   };
 
-  /// What a run changes.
+  /// Mutable state of a run.
   struct Workspace {
     FloatPool pool;
     std::vector<GraphTensor> values;               ///< of each tensor that is computed, while it is needed
@@ -127,7 +127,7 @@ class GraphExecutor::Program {
     throw std::runtime_error(name_ + ": node '" + node.name + "' (" + node.op + "): " + what);
   }
 
-  /// Calls function(), whose errors are this node's.
+  /// Calls function() and rethrows its errors with the node's name.
   template <typename Function>
   void OfNode(const GraphNode& node, const Function& function) const {
     try {
@@ -184,7 +184,7 @@ class GraphExecutor::Program {
     });
   }
 
-  /// Where a step on oneDNN writes to.
+  /// Memory for the result of a step on oneDNN.
   [[nodiscard]] NewNumbers<float> Target(const Step& step, Workspace* workspace) const {
     const size_t size = GraphShapeSize(step.onednn->shape());
     return {step.in_place ? workspace->values[size_t(step.node.inputs[1])].floats.Overwritten()
@@ -192,8 +192,8 @@ class GraphExecutor::Program {
             size};
   }
 
-  /// Results beyond those that the node names, and those that it names and an operator does not give (Dropout's mask),
-  /// are nobody's.
+  /// Stores the results that the node names. Results that it does not name are discarded; outputs that the operator
+  /// does not compute (Dropout's mask) stay without numbers.
   static void Keep(const GraphNode& node, std::vector<GraphTensor> results, Workspace* workspace) {
     results.resize(std::max(results.size(), node.outputs.size()));
     for (size_t i = 0; i < node.outputs.size(); ++i) {
@@ -259,7 +259,7 @@ class GraphExecutor::Program {
     }
   }
 
-  /// Node i on oneDNN, where it runs there, together with those behind it that it can do.
+  /// Makes node i a step on oneDNN if that supports it, fused with the nodes after it where possible.
   void MakeOnednn(size_t i, Workspace* workspace, Step* step) {
     const std::vector<const GraphTensor*> inputs = Inputs(step->node, *workspace);
     const OperatorSettings settings = SettingsFor(workspace);
@@ -282,7 +282,7 @@ class GraphExecutor::Program {
     if (step->in_place) step->node.inputs.push_back(summand);
   }
 
-  /// The nodes behind node i that read this tensor; none when it is asked for or read otherwise too.
+  /// The nodes after node i that read this tensor; none unless it has exactly `count` uses (the graph's outputs count).
   [[nodiscard]] std::vector<size_t> ReadersOf(int tensor, size_t i, int count) const {
     std::vector<size_t> readers;
     if (tensor < 0 || uses_[size_t(tensor)] != count) return readers;
@@ -293,7 +293,7 @@ class GraphExecutor::Program {
     return readers;
   }
 
-  /// Node k is done by this step, whose result becomes its.
+  /// Marks node k as done by this step, whose outputs become those of the node.
   void Take(size_t k, Step* step) {
     done_[k] = true;
     step->node.outputs = nodes_[k].outputs;
@@ -314,8 +314,8 @@ class GraphExecutor::Program {
     Take(product, step);
   }
 
-  /// The tensor to which the next node adds the convolution's result, where both have one shape and nobody reads that
-  /// tensor later; −1 without one.
+  /// The tensor to which the next node adds the convolution's result, if both have one shape and the tensor is not read
+  /// later; −1 otherwise.
   int FuseSum(size_t i, const OperatorArguments& arguments, const Workspace& workspace, Step* step,
               FusedOperators* fused) {
     const int x = ResultOf(*step);

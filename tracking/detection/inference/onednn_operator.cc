@@ -35,7 +35,8 @@ memory::desc ImageDesc(const std::vector<int64_t>& shape, bool channels_last) {
 /// Numbers in a row.
 memory::desc RowDesc(size_t size) { return {{memory::dim(size)}, kFloat, memory::format_tag::x}; }
 
-/// Scratch memory of the caller's: the library's own is one a thread that makes primitives, and not one that runs them.
+/// Scratch memory is the caller's: the library's own belongs to the thread that makes a primitive, not to the one that
+/// runs it.
 dnnl::primitive_attr AttributesWith(const dnnl::post_ops& ops) {
   dnnl::primitive_attr attributes;
   attributes.set_post_ops(ops);
@@ -51,7 +52,7 @@ dnnl::post_ops PostOps(const FusedOperators& fused) {
   return ops;
 }
 
-/// A copy of constants in the order that a primitive wants.
+/// A copy of constants in the layout that a primitive expects.
 memory Packed(const memory::desc& from, const SharedNumbers<float>& values, const memory::desc& to) {
   memory source(from, ProcessorEngine(), const_cast<float*>(values.data())), target(to, ProcessorEngine());
   dnnl::stream stream(ProcessorEngine());
@@ -84,7 +85,7 @@ struct KernelAxes {
   }
 };
 
-/// What a convolution makes of its image's axes.
+/// Axes of a convolution: of its image, kernel, window and result.
 struct ConvolutionAxes {
   ImageAxes in;
   KernelAxes kernel;

@@ -15,9 +15,8 @@
 
 namespace bodyloom {
 
-/// oneDNN cuts its work for as many threads as OpenMP would give this thread, when a primitive is made and when it
-/// runs. While one of these lives that is one: several networks in several threads share the processor, and equal
-/// inputs give equal bits.
+/// Limits oneDNN to one thread during its lifetime. oneDNN divides its work among OpenMP's threads when a primitive is
+/// made and when it runs. With one thread several networks can run side by side, and equal inputs give equal bits.
 class OneThread {
  public:
   OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
@@ -29,18 +28,18 @@ class OneThread {
   int before_;
 };
 
-/// What an operator does to its result where that is, in this order.
+/// Operators applied to the result in place, in this order.
 struct FusedOperators {
-  bool sum = false;    ///< of a convolution: adds what is in the result's memory before
+  bool sum = false;    ///< of a convolution: adds the previous content of the result's memory
   bool swish = false;  ///< of a convolution: x / (1 + exp(−x))
   std::optional<std::pair<float, float>> clip;
 };
 
-/// Made once for inputs of known shapes; constants are kept in the order that the processor likes. Several threads may
-/// run one at once, each with a memory of its own.
+/// Made once for inputs of known shapes; constants are kept in the layout that is fastest for the processor. Several
+/// threads may run one at once, each with a memory of its own.
 class OnednnOperator {
  public:
-  /// What one thread needs to run an operator over and over: views of the numbers that come by.
+  /// Reusable per-thread state of an operator: oneDNN views that are bound to the numbers of each run.
   struct Memory {
     struct Bound {
       std::vector<dnnl::memory> views;
@@ -57,20 +56,20 @@ class OnednnOperator {
   /// The shape that Conv gives. Throws std::runtime_error when image and kernel do not fit each other.
   static std::vector<int64_t> ConvolvedShape(const OperatorArguments& arguments);
 
-  /// How many of the node's first inputs Run() takes; the others are constants that are in here.
+  /// Number of the node's inputs, from the first, that Run() takes; the others are constants stored in the operator.
   [[nodiscard]] size_t num_inputs() const { return num_inputs_; }
   [[nodiscard]] const std::vector<int64_t>& shape() const { return shape_; }
-  /// The result. It is written to `target`, which holds as many numbers, or is the summand of FusedOperators::sum.
+  /// Computes the result in `target`, which holds as many numbers; for FusedOperators::sum it contains the summand.
   [[nodiscard]] GraphTensor Run(std::span<const GraphTensor* const> inputs, const NewNumbers<float>& target,
                                 Memory* memory, FloatPool* pool) const;
 
  private:
-  /// In place of an input's number.
+  /// Arguments that are not inputs.
   enum Place { kConstant = -1, kScratch = -2, kResult = -3, kSource = -4, kTarget = -5 };
   struct Argument {
     int role;  ///< DNNL_ARG_SRC …
     dnnl::memory::desc desc;
-    int place;  ///< an input, or a Place
+    int place;  ///< index of an input, or a Place
     dnnl::memory constant;
   };
   struct Primitive {
@@ -83,7 +82,7 @@ class OnednnOperator {
   void MakeConvolution(const OperatorArguments& arguments, const FusedOperators& fused);
   void MakePool(const OperatorArguments& arguments);
   void MakeResize(const OperatorArguments& arguments);
-  /// Of any shape, number by number.
+  /// Elementwise, for any shape.
   void MakeSigmoid(const OperatorArguments& arguments);
   void MakeSum(const OperatorArguments& arguments, const FusedOperators& fused);
 
@@ -91,7 +90,7 @@ class OnednnOperator {
   std::vector<std::vector<int64_t>> input_shapes_;
   std::vector<int64_t> shape_;
   std::vector<Primitive> primitives_;
-  size_t scratch_bytes_ = 0, source_bytes_ = 0, target_bytes_ = 0;  ///< of what lives during a run
+  size_t scratch_bytes_ = 0, source_bytes_ = 0, target_bytes_ = 0;  ///< of temporary memory during a run
 };
 
 }  // namespace bodyloom

@@ -15,11 +15,11 @@
 namespace bodyloom {
 namespace {
 
-constexpr size_t kMostBytes = size_t{1} << 30, kMostNodes = 20'000, kMostAttributes = 100, kMostAxes = 8;
-constexpr size_t kMostUnpacked = 16;  // bytes of constants a byte of the file
+constexpr size_t kMaxBytes = size_t{1} << 30, kMaxNodes = 20'000, kMaxAttributes = 100, kMaxAxes = 8;
+constexpr size_t kMaxUnpacked = 16;  // bytes of constants a byte of the file
 enum OnnxType : int64_t { kOnnxFloat = 1, kOnnxInt32 = 6, kOnnxInt64 = 7, kOnnxBool = 9, kOnnxHalf = 10 };
 
-/// What a tensor's message holds.
+/// Contents of a tensor's message.
 struct StoredTensor {
   std::string_view name, raw;
   std::vector<int64_t> shape, ints;
@@ -42,7 +42,7 @@ std::vector<To> Unpacked(std::string_view raw, To (*convert)(Stored)) {
 class OnnxReader {
  public:
   OnnxReader(std::string_view bytes, const std::string& name)
-      : bytes_(bytes), name_(name), budget_(kMostUnpacked * bytes.size()) {
+      : bytes_(bytes), name_(name), budget_(kMaxUnpacked * bytes.size()) {
     graph_.name = name;
   }
 
@@ -54,8 +54,9 @@ class OnnxReader {
       if (field.number == 7) graph = model.Bytes(field), has_graph = true;
       if (field.number == 8) ReadOperatorSet(model.Bytes(field));
     }
-    if (!has_graph) Refuse(name_, "not an ONNX file", "no graph in it");
-    if (graph_.opset < 7) Refuse(name_, "operators", Concatenate("version ", graph_.opset, ", expected 7 or later"));
+    if (!has_graph) ThrowFileError(name_, "not an ONNX file", "no graph in it");
+    if (graph_.opset < 7)
+      ThrowFileError(name_, "operators", Concatenate("version ", graph_.opset, ", expected 7 or later"));
     ReadGraph(graph);
     return std::move(graph_);
   }
@@ -86,14 +87,14 @@ class OnnxReader {
       if (field.number == 5) AddConstant(graph.Bytes(field));
       if (field.number == 11) inputs.push_back(graph.Bytes(field));
       if (field.number == 12) outputs.push_back(graph.Bytes(field));
-      if (field.number == 15) Refuse(name_, "graph", "sparse constants, expected dense ones");
+      if (field.number == 15) ThrowFileError(name_, "graph", "sparse constants, expected dense ones");
     }
-    if (nodes.size() > kMostNodes)
-      Refuse(name_, "graph", Concatenate(nodes.size(), " nodes, expected at most ", kMostNodes));
+    if (nodes.size() > kMaxNodes)
+      ThrowFileError(name_, "graph", Concatenate(nodes.size(), " nodes, expected at most ", kMaxNodes));
     ReadInputs(inputs);
     for (size_t i = 0; i < nodes.size(); ++i) ReadNode(nodes[i], Concatenate("node ", i));
     for (const std::string_view output : outputs) graph_.outputs.push_back(Known(Value(output).first, "outputs"));
-    if (graph_.outputs.empty()) Refuse(name_, "graph", "no outputs");
+    if (graph_.outputs.empty()) ThrowFileError(name_, "graph", "no outputs");
   }
 
   void ReadInputs(const std::vector<std::string_view>& inputs) {
@@ -104,7 +105,7 @@ class OnnxReader {
       graph_.tensors.back().shape = std::move(shape);
     }
     if (graph_.inputs.size() != 1)
-      Refuse(name_, "inputs", Concatenate(graph_.inputs.size(), " of them, expected one picture"));
+      ThrowFileError(name_, "inputs", Concatenate(graph_.inputs.size(), " of them, expected one image"));
   }
 
   /// Name and shape.
@@ -132,8 +133,8 @@ class OnnxReader {
         }
       }
     }
-    if (shape.size() > kMostAxes)
-      Refuse(name_, "shape", Concatenate(shape.size(), " axes, expected at most ", kMostAxes));
+    if (shape.size() > kMaxAxes)
+      ThrowFileError(name_, "shape", Concatenate(shape.size(), " axes, expected at most ", kMaxAxes));
     return shape;
   }
 
@@ -148,7 +149,7 @@ class OnnxReader {
 
   int Define(const std::string& name, const std::string& place) {
     const auto [at, is_new] = number_.emplace(name, int(number_.size()));
-    if (!is_new) Refuse(name_, place, "'" + PrintableText(name) + "' is written twice");
+    if (!is_new) ThrowFileError(name_, place, "'" + PrintableText(name) + "' is written twice");
     graph_.tensors.push_back({PrintableText(name), {}, {}});
     return at->second;
   }
@@ -156,8 +157,8 @@ class OnnxReader {
   [[nodiscard]] int Known(const std::string& name, const std::string& place) const {
     const auto at = number_.find(name);
     if (at == number_.end()) {
-      Refuse(name_, place,
-             "'" + PrintableText(name) + "' is not there, expected a constant or what a node before it writes");
+      ThrowFileError(name_, place,
+                     "'" + PrintableText(name) + "' is not there, expected a constant or what a node before it writes");
     }
     return at->second;
   }
@@ -178,8 +179,8 @@ class OnnxReader {
     }
     if (node.name.empty()) node.name = place;
     place = "node '" + node.name + "' (" + node.op + ")";
-    if (!standard) Refuse(name_, place, "an operator of its author's own, expected one of the standard");
-    if (attributes.size() > kMostAttributes) Refuse(name_, place, Concatenate(attributes.size(), " attributes"));
+    if (!standard) ThrowFileError(name_, place, "an operator of its author's own, expected one of the standard");
+    if (attributes.size() > kMaxAttributes) ThrowFileError(name_, place, Concatenate(attributes.size(), " attributes"));
     for (const std::string_view attribute : attributes) ReadAttribute(attribute, place, &node);
     for (const std::string& input : inputs) node.inputs.push_back(input.empty() ? -1 : Known(input, place));
     for (const std::string& output : outputs) node.outputs.push_back(output.empty() ? -1 : Define(output, place));
@@ -211,7 +212,7 @@ class OnnxReader {
         case 6:
         case 10:
         case 11:
-          Refuse(name_, place, "a graph within the graph, expected none");
+          ThrowFileError(name_, place, "a graph within the graph, expected none");
         default:
           break;
       }
@@ -254,7 +255,8 @@ class OnnxReader {
           stored.has_raw = true;
           break;
         case 14:
-          if (tensor.Integer(field) != 0) Refuse(name_, place, "weights in another file, expected them in this one");
+          if (tensor.Integer(field) != 0)
+            ThrowFileError(name_, place, "weights in another file, expected them in this one");
           break;
         default:
           break;
@@ -264,16 +266,16 @@ class OnnxReader {
   }
 
   GraphTensor Tensor(const StoredTensor& stored, const std::string& place) {
-    if (stored.shape.size() > kMostAxes) Refuse(name_, place, Concatenate(stored.shape.size(), " axes"));
+    if (stored.shape.size() > kMaxAxes) ThrowFileError(name_, place, Concatenate(stored.shape.size(), " axes"));
     size_t size = 0;
     try {
       size = GraphShapeSize(stored.shape);
     } catch (const std::runtime_error& error) {
-      Refuse(name_, place, error.what());
+      ThrowFileError(name_, place, error.what());
     }
     const bool is_float = stored.type == kOnnxFloat || stored.type == kOnnxHalf;
     const size_t bytes = size * (is_float ? sizeof(float) : sizeof(int64_t));
-    if (bytes > budget_) Refuse(name_, place, "constants that are much larger than the file");
+    if (bytes > budget_) ThrowFileError(name_, place, "constants that are much larger than the file");
     budget_ -= bytes;
     if (stored.has_raw) CheckBytes(stored, size, place);
     if (is_float) {
@@ -289,14 +291,14 @@ class OnnxReader {
   void CheckBytes(const StoredTensor& stored, size_t size, const std::string& place) const {
     const size_t each = stored.type == kOnnxInt64 ? 8 : stored.type == kOnnxHalf ? 2 : stored.type == kOnnxBool ? 1 : 4;
     if (stored.raw.size() != size * each) {
-      Refuse(name_, place,
-             Concatenate(stored.raw.size(), " bytes, expected ", size * each, " for a shape of ",
-                         GraphShapeText(stored.shape)));
+      ThrowFileError(name_, place,
+                     Concatenate(stored.raw.size(), " bytes, expected ", size * each, " for a shape of ",
+                                 GraphShapeText(stored.shape)));
     }
   }
 
   void CheckCount(size_t found, size_t size, const std::string& place) const {
-    if (found != size) Refuse(name_, place, Concatenate(found, " numbers, expected ", size));
+    if (found != size) ThrowFileError(name_, place, Concatenate(found, " numbers, expected ", size));
   }
 
   static std::vector<float> Floats(const StoredTensor& stored) {
@@ -320,8 +322,9 @@ class OnnxReader {
       case kOnnxBool:
         return stored.has_raw ? Unpacked<uint8_t, int64_t>(stored.raw, widen) : stored.ints;
       default:
-        Refuse(name_, place,
-               Concatenate("numbers of type ", stored.type, ", expected float32, float16, int32, int64 or bool"));
+        ThrowFileError(
+            name_, place,
+            Concatenate("numbers of type ", stored.type, ", expected float32, float16, int32, int64 or bool"));
     }
   }
 
@@ -336,6 +339,6 @@ class OnnxReader {
 
 OperatorGraph ParseOnnxGraph(std::string_view bytes, const std::string& name) { return OnnxReader(bytes, name).Read(); }
 
-OperatorGraph ReadOnnxGraph(const std::string& path) { return ParseOnnxGraph(ReadFileBytes(path, kMostBytes), path); }
+OperatorGraph ReadOnnxGraph(const std::string& path) { return ParseOnnxGraph(ReadFileBytes(path, kMaxBytes), path); }
 
 }  // namespace bodyloom

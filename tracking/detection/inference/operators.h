@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Operators of graphs (graph.h) that run as plain loops. Those on oneDNN: onednn_operator.h.
 ///
-/// Two tensors are broadcast as everywhere in ONNX: shapes are written one above the other, last axes first, and an
-/// axis of length 1 (or none) stands for as many equal ones as the other tensor has.
+/// Two tensors are broadcast as everywhere in ONNX: their shapes are aligned at the last axis, and an axis of length 1
+/// (or a missing one) is repeated to the length of the other tensor's.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@
 
 namespace bodyloom {
 
-/// Room for numbers, 64-byte aligned as vector kernels like it, with any in it.
+/// Uninitialised array, 64-byte aligned for vector kernels.
 std::shared_ptr<float[]> AlignedArray(size_t size);
 
-/// Memory of one run after the other: what no tensor holds any more is given out again.
+/// Pool of arrays for successive runs: an array that no tensor holds any more is reused.
 class FloatPool {
  public:
   /// The smallest of the free arrays that are large enough, or a new one (AlignedArray()).
@@ -34,7 +34,7 @@ class FloatPool {
   std::vector<Array> arrays_;
 };
 
-/// Numbers that an operator writes before anybody reads them.
+/// Array for an operator's result; converts to SharedNumbers once written.
 template <typename T>
 class NewNumbers {
  public:
@@ -51,15 +51,15 @@ class NewNumbers {
   size_t size_;
 };
 
-/// What all operators of a graph have in common.
+/// Settings shared by all operators of a graph.
 struct OperatorSettings {
   int64_t opset = 0;
   bool channels_last = false;
   FloatPool* pool = nullptr;
 };
 
-/// What an operator is given: its inputs and attributes, checked as they are asked for. Every request throws
-/// std::runtime_error "what was found, expected what", without a place.
+/// Inputs and attributes of an operator, checked on access. Every accessor throws std::runtime_error "what was found,
+/// expected what", without the node's name.
 class OperatorArguments {
  public:
   /// inputs[i] is null where the node leaves one out.
@@ -77,14 +77,13 @@ class OperatorArguments {
   [[nodiscard]] const SharedNumbers<float>& Floats(size_t i) const { return FloatInput(i).floats; }
   /// The numbers of an input that must be whole.
   [[nodiscard]] const SharedNumbers<int64_t>& Ints(size_t i) const;
-  /// A list of whole numbers that old operators have as an attribute and newer ones as an input; empty when neither is
-  /// there.
+  /// A list of whole numbers that old operators have as an attribute and newer ones as an input; empty without either.
   [[nodiscard]] std::vector<int64_t> List(const std::string& attribute, size_t input) const;
-  /// A float of the same two kinds.
+  /// A float that is an attribute or an input likewise.
   [[nodiscard]] float Number(const std::string& attribute, size_t input, float absent) const;
-  /// The attribute `axis` among so many, from 0.
+  /// The attribute `axis` among `rank` axes, from 0.
   [[nodiscard]] int Axis(int64_t absent, int rank) const;
-  /// Room for a result.
+  /// Array for a result.
   template <typename T>
   [[nodiscard]] NewNumbers<T> New(size_t size) const {
     if constexpr (std::is_same_v<T, float>) return {settings_.pool->Take(size), size};
@@ -99,25 +98,25 @@ class OperatorArguments {
 
 using OperatorFunction = std::vector<GraphTensor> (*)(const OperatorArguments&);
 
-/// The operator of that name; null for one that is not here.
+/// The operator of that name; null if it is not supported.
 OperatorFunction FindOperator(const std::string& name);
 
 /// An axis among `rank`, from 0, where −1 is the last. Throws std::runtime_error for one that is not among them.
 int AxisAmong(int64_t axis, int rank);
-/// The shape of two that are broadcast. Throws std::runtime_error when they do not fit.
+/// The shape that two shapes are broadcast to. Throws std::runtime_error when they do not fit.
 std::vector<int64_t> BroadcastShape(const std::vector<int64_t>& a, const std::vector<int64_t>& b);
-/// The tensor in a shape that it is broadcast to.
+/// The tensor broadcast to `shape`.
 GraphTensor BroadcastTo(const GraphTensor& tensor, const std::vector<int64_t>& shape);
 
-// Number by number, and sums over axes.
+// Elementwise operators, and reductions over axes.
 
-/// Add, Sub, Mul, Div, Pow, Max, Min, Equal (floats or whole numbers alike in both).
+/// Add, Sub, Mul, Div, Pow, Max, Min, Equal (both inputs floats or both whole numbers).
 GraphTensor RunBinary(const OperatorArguments& arguments);
-/// Where: condition, then, else.
+/// The operator Where, with inputs condition, then, else.
 GraphTensor RunWhere(const OperatorArguments& arguments);
 /// HardSigmoid, HardSwish, Relu, LeakyRelu, Tanh, Sqrt, Exp, Abs, Neg, Floor, Clip.
 GraphTensor RunUnary(const OperatorArguments& arguments);
-/// What Clip limits numbers to.
+/// Minimum and maximum of Clip.
 std::pair<float, float> ClipBounds(const OperatorArguments& arguments);
 /// ReduceSum, ReduceMean, ReduceMax, ReduceL2; all axes when none are named.
 GraphTensor RunReduce(const OperatorArguments& arguments);
@@ -125,21 +124,21 @@ GraphTensor RunReduce(const OperatorArguments& arguments);
 /// those sum over all of them.
 GraphTensor RunSoftmax(const OperatorArguments& arguments);
 
-// Numbers that move unchanged, and those that count: shapes, ranges, constants.
+// Rearrangements, casts, shapes, ranges and constants.
 
 GraphTensor RunConcat(const OperatorArguments& arguments);
 std::vector<GraphTensor> RunSplit(const OperatorArguments& arguments);
 GraphTensor RunSlice(const OperatorArguments& arguments);
 GraphTensor RunTranspose(const OperatorArguments& arguments);
 GraphTensor RunGather(const OperatorArguments& arguments);
-/// Values written to whole places of the first axes.
+/// Writes slices at indices of the first axes.
 GraphTensor RunScatterNd(const OperatorArguments& arguments);
 /// Reshape, Flatten, Squeeze, Unsqueeze.
 GraphTensor RunReshape(const OperatorArguments& arguments);
 /// Expand, and Tile.
 GraphTensor RunExpand(const OperatorArguments& arguments);
 GraphTensor RunTile(const OperatorArguments& arguments);
-/// Cast: floats of all sizes are float32 here, whole numbers and truth int64.
+/// Cast: all float types become float32, integers and bool int64.
 GraphTensor RunCast(const OperatorArguments& arguments);
 /// Shape, Constant, ConstantOfShape, Range.
 GraphTensor RunShapeOf(const OperatorArguments& arguments);
@@ -147,16 +146,16 @@ GraphTensor RunConstant(const OperatorArguments& arguments);
 GraphTensor RunConstantOfShape(const OperatorArguments& arguments);
 GraphTensor RunRange(const OperatorArguments& arguments);
 
-// Images.
+// Operators on images.
 
-/// The attributes that windows have in common; the image has two axes of pixels.
+/// Attributes common to windowed operators, along the rows and the columns of the image.
 struct ImageWindow {
   std::array<int64_t, 2> kernel = {}, stride = {}, dilation = {}, before = {}, after = {};
 
   /// Kernel lengths come from the attribute `kernel_shape`, or are those given. Throws std::runtime_error for sides
   /// outside 1 to 64, strides outside 1 to 64, padding beyond the kernel.
   ImageWindow(const OperatorArguments& arguments, std::array<int64_t, 2> kernel_lengths, std::array<int64_t, 2> image);
-  /// How many windows fit an axis of that length.
+  /// Number of windows along an axis of that length.
   [[nodiscard]] int64_t Count(size_t axis, int64_t length, bool ceil = false) const;
 };
 
@@ -165,16 +164,16 @@ struct ImageAxes {
   int64_t count, channels, rows, columns;
 
   ImageAxes(const std::vector<int64_t>& shape, bool channels_last);
-  /// The shape of so many channels, rows and columns.
+  /// The shape of an image with these sizes.
   [[nodiscard]] static std::vector<int64_t> Shape(int64_t count, int64_t channels, int64_t rows, int64_t columns,
                                                   bool channels_last);
 };
 
-/// Throws std::runtime_error unless input 0 is an image: four axes, floats.
+/// Input 0. Throws std::runtime_error unless it is an image: four axes, floats.
 const GraphTensor& ImageInput(const OperatorArguments& arguments);
 
-/// The shape that Resize and Upsample give. Throws std::runtime_error for an interpolation other than nearest by whole
-/// factors, where each pixel becomes equal ones, or linear between the pixels' centres to any size.
+/// The shape of the result of Resize and Upsample. Throws std::runtime_error for an interpolation other than nearest by
+/// whole factors, which repeats pixels, or linear between the pixels' centres to any size.
 std::vector<int64_t> ResizedShape(const OperatorArguments& arguments);
 
 /// Pad with zeros, of a tensor of any rank.
@@ -183,14 +182,14 @@ GraphTensor RunPad(const OperatorArguments& arguments);
 GraphTensor RunDepthToSpace(const OperatorArguments& arguments);
 /// Mean of each channel.
 GraphTensor RunGlobalAveragePool(const OperatorArguments& arguments);
-/// scale · (x − mean) / √(variance + epsilon) + bias, a channel.
+/// scale · (x − mean) / √(variance + epsilon) + bias per channel.
 GraphTensor RunBatchNormalization(const OperatorArguments& arguments);
 
-// Products of matrices, on oneDNN.
+// Matrix products, on oneDNN.
 
-/// MatMul: products of the last two axes, the others broadcast; a list of numbers counts as one row or column.
+/// MatMul: products over the last two axes, the others broadcast; a vector counts as one row or column.
 GraphTensor RunMatMul(const OperatorArguments& arguments);
-/// Gemm: alpha · A · B + beta · C, A and B transposed on request.
+/// Gemm: alpha · A · B + beta · C, with A and B optionally transposed.
 GraphTensor RunGemm(const OperatorArguments& arguments);
 
 }  // namespace bodyloom

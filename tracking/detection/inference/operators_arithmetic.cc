@@ -56,7 +56,7 @@ struct Operands {
   const std::vector<int64_t>&a_shape, &b_shape, &shape;
 };
 
-/// compute(a, b) of each pair.
+/// Writes compute(a, b) of each pair of the broadcast operands.
 template <typename T, typename Compute>
 void Combine(const Operands<T>& operands, const NewNumbers<T>& result, const Compute& compute) {
   const auto& [a, b, a_shape, b_shape, shape] = operands;
@@ -71,7 +71,7 @@ void Combine(const Operands<T>& operands, const NewNumbers<T>& result, const Com
   }
 }
 
-/// Whole numbers wrap around, as a file may make them as large as it likes.
+/// Whole numbers wrap around, since those of a file may be arbitrarily large.
 int64_t Wrapped(uint64_t value) { return int64_t(value); }
 
 int64_t Divided(int64_t a, int64_t b) {
@@ -105,7 +105,7 @@ T Computed(char op, T a, T b) {
   }
 }
 
-/// The operator is looked at once, not once a number.
+/// Dispatches on the operator once, not for every number.
 template <typename T>
 void Combine(char op, const Operands<T>& operands, const NewNumbers<T>& result) {
   const auto with = [&]<char kOp>() { Combine(operands, result, [](T x, T y) { return Computed<T>(kOp, x, y); }); };
@@ -247,8 +247,8 @@ GraphTensor RunWhere(const OperatorArguments& arguments) {
 }
 
 std::pair<float, float> ClipBounds(const OperatorArguments& arguments) {
-  constexpr float kMost = std::numeric_limits<float>::max();
-  return {arguments.Number("min", 1, -kMost), arguments.Number("max", 2, kMost)};
+  constexpr float kMaximum = std::numeric_limits<float>::max();
+  return {arguments.Number("min", 1, -kMaximum), arguments.Number("max", 2, kMaximum)};
 }
 
 GraphTensor RunUnary(const OperatorArguments& arguments) {

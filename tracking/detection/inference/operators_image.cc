@@ -14,15 +14,15 @@ namespace {
 
 constexpr int64_t kLongest = 64;  ///< side of a window, stride
 
-std::array<int64_t, 2> Pair(const std::vector<int64_t>& values, const std::string& what, int64_t least) {
-  if (values.size() != 2 || std::min(values[0], values[1]) < least || std::max(values[0], values[1]) > kLongest) {
+std::array<int64_t, 2> Pair(const std::vector<int64_t>& values, const std::string& what, int64_t minimum) {
+  if (values.size() != 2 || std::min(values[0], values[1]) < minimum || std::max(values[0], values[1]) > kLongest) {
     throw std::runtime_error(
-        Concatenate(what, " of ", GraphShapeText(values), ", expected two numbers from ", least, " to ", kLongest));
+        Concatenate(what, " of ", GraphShapeText(values), ", expected two numbers from ", minimum, " to ", kLongest));
   }
   return {values[0], values[1]};
 }
 
-/// How often each axis of an image is repeated.
+/// Scale factor of each axis of an image.
 std::vector<int64_t> FactorsOf(const OperatorArguments& arguments, const std::vector<int64_t>& shape) {
   const size_t scales = arguments.node().op == "Upsample" || arguments.opset() < 11 ? 1 : 2;
   std::vector<int64_t> factors;

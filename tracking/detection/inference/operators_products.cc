@@ -11,7 +11,7 @@
 namespace bodyloom {
 namespace {
 
-/// C = alpha · A · B, row after row.
+/// Computes C = alpha · A · B, row-major.
 void Multiply(bool transpose_a, bool transpose_b, int64_t rows, int64_t columns, int64_t inner, float alpha,
               const float* a, const float* b, float* c) {
   if (rows == 0 || columns == 0) return;

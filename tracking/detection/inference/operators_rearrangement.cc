@@ -16,7 +16,7 @@ size_t Product(const std::vector<int64_t>& shape, size_t from, size_t to) {
   return GraphShapeSize({shape.begin() + std::ptrdiff_t(from), shape.begin() + std::ptrdiff_t(to)});
 }
 
-/// move(numbers of the input, room for those of the result), for whichever kind the tensor holds.
+/// Calls move(input's numbers, result's numbers) with the element type of the tensor.
 template <typename Move>
 GraphTensor Moved(const OperatorArguments& arguments, const GraphTensor& tensor, const std::vector<int64_t>& shape,
                   const Move& move) {
@@ -28,7 +28,7 @@ GraphTensor Moved(const OperatorArguments& arguments, const GraphTensor& tensor,
   return tensor.has_floats() ? moved(tensor.floats) : moved(tensor.ints);
 }
 
-/// The numbers at `places` of the input, one behind the other.
+/// The numbers at the indices `places` of the input, in that order.
 GraphTensor Picked(const OperatorArguments& arguments, const GraphTensor& tensor, const std::vector<int64_t>& shape,
                    const std::vector<size_t>& places) {
   return Moved(arguments, tensor, shape, [&places](const auto* from, auto* to) {
@@ -36,7 +36,7 @@ GraphTensor Picked(const OperatorArguments& arguments, const GraphTensor& tensor
   });
 }
 
-/// Along one axis: `count` entries from `begin` on.
+/// The `count` entries from `begin` on along one axis.
 GraphTensor Part(const OperatorArguments& arguments, const GraphTensor& tensor, int axis, int64_t begin,
                  int64_t count) {
   std::vector<int64_t> shape = tensor.shape;
@@ -48,7 +48,7 @@ GraphTensor Part(const OperatorArguments& arguments, const GraphTensor& tensor, 
   });
 }
 
-/// Where a slice begins and how many entries it takes of an axis of that length.
+/// Begin, step and number of entries of a slice of one axis.
 struct Taken {
   int64_t begin = 0, step = 1, count = 0;
 };

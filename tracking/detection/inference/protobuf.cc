@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie");
 
-constexpr uint64_t kLargestNumber = (1U << 29) - 1;  // of a field, as the format has it
+constexpr uint64_t kLargestNumber = (1U << 29) - 1;  // largest field number of the format
 
 }  // namespace
 

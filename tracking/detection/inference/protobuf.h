@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Protocol Buffers, walked where they lie: the fields of a message one after the other, without the schema and without
-/// a copy.
+/// Reads Protocol Buffers in place: the fields of a message in sequence, without the schema and without a copy.
 ///
-/// A message is a sequence of fields. Each begins with a varint (7 bits a byte, the least first, the top bit set on all
-/// but the last of at most ten): 8 · number + kind. Kind 0: another varint. 1: eight bytes. 5: four bytes. 2: a varint
-/// that counts the bytes which follow: text, a message, or numbers one behind the other ("packed"). Fields come in any
-/// order and any number of times. Little endian. Source: protobuf.dev, "Encoding".
+/// A message is a sequence of fields. Each begins with a varint (7 bits a byte, the least significant first, the top
+/// bit set on all but the last of at most ten): 8 · number + kind. Kind 0: another varint. 1: eight bytes. 5: four
+/// bytes. 2: a varint that counts the bytes which follow: text, a message, or an array of numbers ("packed"). Fields
+/// come in any order and any number of times. Little endian. Source: protobuf.dev, "Encoding".
 ///
 /// Every length is checked before it is used; one that leaves the message throws std::runtime_error "place: byte N:
 /// what was found, expected what". Kinds 3 and 4 (groups) are refused.
@@ -28,21 +27,21 @@ struct ProtoField {
   std::string_view bytes;  ///< of kBytes
 };
 
-/// A message's fields; its bytes must outlive it. `place` is what errors begin with.
+/// Iterates over the fields of a message; the bytes must outlive it. Error messages begin with `place`.
 class ProtoMessage {
  public:
   ProtoMessage(std::string_view bytes, std::string place) : bytes_(bytes), place_(std::move(place)) {}
 
-  /// The next field; false at the end.
+  /// Reads the next field; false at the end.
   bool Next(ProtoField* field);
 
   /// The field's bytes. Throws when it holds a number.
   [[nodiscard]] std::string_view Bytes(const ProtoField& field) const;
   /// The field's varint. Throws when it is of another kind.
   [[nodiscard]] int64_t Integer(const ProtoField& field) const;
-  /// Adds the field's whole numbers, one or packed.
+  /// Appends the field's whole numbers, one or packed.
   void AddIntegers(const ProtoField& field, std::vector<int64_t>* to) const;
-  /// Adds the field's float32 numbers, one or packed.
+  /// Appends the field's float32 numbers, one or packed.
   void AddFloats(const ProtoField& field, std::vector<float>* to) const;
 
   [[nodiscard]] const std::string& place() const { return place_; }

@@ -13,19 +13,20 @@
 namespace bodyloom {
 namespace {
 
-/// The numbers that are there, one by one.
+/// Float32 or float16 values as stored.
 class StoredFloats {
  public:
   StoredFloats(const TfliteStored& stored, size_t size, const std::string& place)
       : half_(stored.type == TfliteType::kFloat16), halves_(stored.bytes), floats_(stored.bytes), place_(place) {
     const size_t bytes = size * (half_ ? sizeof(uint16_t) : sizeof(float));
     if (stored.bytes.size() != bytes) {
-      Refuse(place, Concatenate(stored.bytes.size(), " bytes of values, expected ", bytes));
+      ThrowFileError(place, Concatenate(stored.bytes.size(), " bytes of values, expected ", bytes));
     }
   }
   [[nodiscard]] float operator[](size_t i) const {
     const float value = half_ ? FloatFromHalf(halves_[i]) : floats_[i];
-    if (!std::isfinite(value)) Refuse(place_, Concatenate("value ", i, " is ", value, ", expected a finite one"));
+    if (!std::isfinite(value))
+      ThrowFileError(place_, Concatenate("value ", i, " is ", value, ", expected a finite one"));
     return value;
   }
 
@@ -43,7 +44,8 @@ class SparseIndices {
     kind_ = dimension.Number<uint8_t>(field, 0);
     const std::optional<FlatTable> table = dimension.Table(field + 1);
     if (kind_ < 1 || kind_ > 3 || !table) {
-      Refuse(place, Concatenate(what, " of kind ", int{kind_}, ", expected 1 (int32), 2 (uint16) or 3 (uint8)"));
+      ThrowFileError(place,
+                     Concatenate(what, " of kind ", int{kind_}, ", expected 1 (int32), 2 (uint16) or 3 (uint8)"));
     }
     if (kind_ == 1) longs_ = table->Numbers<int32_t>(0);
     if (kind_ == 2) shorts_ = table->Numbers<uint16_t>(0);
@@ -67,43 +69,44 @@ FlatTable CompressedDimension(const FlatTable& sparsity, const std::vector<int64
   const FlatNumbers<int32_t> order = sparsity.Numbers<int32_t>(0);
   bool in_order = order.size() == rank;
   for (size_t i = 0; in_order && i < rank; ++i) in_order = order[i] == static_cast<int32_t>(i);
-  if (!in_order) Refuse(place, "a sparse constant whose axes are reordered, expected them in order");
-  if (sparsity.Numbers<int32_t>(1).size() != 0) Refuse(place, "a sparse constant of blocks, expected single values");
+  if (!in_order) ThrowFileError(place, "a sparse constant whose axes are reordered, expected them in order");
+  if (sparsity.Numbers<int32_t>(1).size() != 0)
+    ThrowFileError(place, "a sparse constant of blocks, expected single values");
   const std::vector<FlatTable> dimensions = sparsity.Tables(2, rank);
-  if (dimensions.size() != rank) Refuse(place, Concatenate(dimensions.size(), " sparse axes, expected ", rank));
+  if (dimensions.size() != rank) ThrowFileError(place, Concatenate(dimensions.size(), " sparse axes, expected ", rank));
   for (size_t i = 0; i < rank; ++i) {
     const int format = dimensions[i].Number<uint8_t>(0, 0), expected = i + 1 == rank ? 1 : 0;
     const int size = dimensions[i].Number<int32_t>(1, 0);
-    // The compressed axis is as long as the shape says; writers leave its own number out.
+    // Writers omit the size of the compressed axis; its length is that of the shape.
     if (format != expected || (expected == 0 && size != shape[i])) {
-      Refuse(place, Concatenate("sparse axis ", i, " of format ", format, " and size ", size, ", expected ", expected,
-                                " and ", shape[i]));
+      ThrowFileError(place, Concatenate("sparse axis ", i, " of format ", format, " and size ", size, ", expected ",
+                                        expected, " and ", shape[i]));
     }
   }
   return dimensions.back();
 }
 
-/// Writes the values that are there into zeros.
+/// Writes the stored values of a sparse constant into zeros.
 void Scatter(const TfliteStored& stored, const std::vector<int64_t>& shape, const std::string& place, float* values) {
   const FlatTable dimension = CompressedDimension(*stored.sparsity, shape, place);
   const SparseIndices starts(dimension, 2, "row starts", place), columns(dimension, 4, "column numbers", place);
   const auto num_columns = static_cast<size_t>(shape.back());
   const size_t num_rows = GraphShapeSize(shape) / num_columns, count = columns.size();
   if (starts.size() != num_rows + 1 || starts[0] != 0 || starts[num_rows] != static_cast<int64_t>(count)) {
-    Refuse(place, Concatenate(starts.size(), " row starts for ", num_rows, " rows, expected one more, from 0 to the ",
-                              count, " columns"));
+    ThrowFileError(place, Concatenate(starts.size(), " row starts for ", num_rows,
+                                      " rows, expected one more, from 0 to the ", count, " columns"));
   }
   const StoredFloats there(stored, count, place);
   for (size_t row = 0, i = 0; row < num_rows; ++row) {
     const int64_t end = starts[row + 1];
     if (end < static_cast<int64_t>(i) || end > static_cast<int64_t>(count)) {
-      Refuse(place, Concatenate("row ", row, " ends at value ", end, ", expected ", i, " to ", count));
+      ThrowFileError(place, Concatenate("row ", row, " ends at value ", end, ", expected ", i, " to ", count));
     }
     for (int64_t last = -1; i < static_cast<size_t>(end); ++i) {
       const int64_t column = columns[i];
       if (column <= last || column >= static_cast<int64_t>(num_columns)) {
-        Refuse(place,
-               Concatenate("column ", column, " in row ", row, ", expected ", last + 1, " to ", num_columns - 1));
+        ThrowFileError(
+            place, Concatenate("column ", column, " in row ", row, ", expected ", last + 1, " to ", num_columns - 1));
       }
       values[row * num_columns + static_cast<size_t>(column)] = there[i];
       last = column;
@@ -115,14 +118,14 @@ void Scatter(const TfliteStored& stored, const std::vector<int64_t>& shape, cons
 
 void TfliteBudget::Take(size_t bytes, const std::string& place) {
   if (bytes > bytes_) {
-    Refuse(place, "constants of more than 16 times the file's bytes once unpacked, expected at most that");
+    ThrowFileError(place, "constants of more than 16 times the file's bytes once unpacked, expected at most that");
   }
   bytes_ -= bytes;
 }
 
 GraphTensor TfliteFloats(const TfliteStored& stored, const std::vector<int64_t>& shape, const std::string& place,
                          TfliteBudget* budget) {
-  if (stored.type == TfliteType::kInt32) Refuse(place, "a constant of int32, expected float32 or float16");
+  if (stored.type == TfliteType::kInt32) ThrowFileError(place, "a constant of int32, expected float32 or float16");
   const size_t size = GraphShapeSize(shape);
   budget->Take(size * sizeof(float), place);
   const std::shared_ptr<float[]> values = AlignedArray(size);
@@ -140,8 +143,8 @@ GraphTensor TfliteInts(const TfliteStored& stored, const std::vector<int64_t>& s
                        TfliteBudget* budget) {
   const size_t size = GraphShapeSize(shape);
   if (stored.type != TfliteType::kInt32 || stored.sparsity || stored.bytes.size() != size * sizeof(int32_t)) {
-    Refuse(place,
-           Concatenate(stored.bytes.size(), " bytes of a constant of another type, expected ", size, " of int32"));
+    ThrowFileError(
+        place, Concatenate(stored.bytes.size(), " bytes of a constant of another type, expected ", size, " of int32"));
   }
   budget->Take(size * sizeof(int64_t), place);
   const FlatNumbers<int32_t> there(stored.bytes);

@@ -16,19 +16,19 @@ namespace bodyloom {
 
 enum class TfliteType : int8_t { kFloat32 = 0, kFloat16 = 1, kInt32 = 2 };
 
-/// A constant where it lies in the file.
+/// A constant as stored in the file.
 struct TfliteStored {
   TfliteType type = TfliteType::kFloat32;
   std::string_view bytes;
   std::optional<FlatTable> sparsity;  ///< of a sparse one
 };
 
-/// Bytes of constants that may still be unpacked.
+/// Remaining number of bytes of constants that may be unpacked.
 class TfliteBudget {
  public:
-  /// For a file of so many bytes.
+  /// For a file of `file_bytes` bytes.
   explicit TfliteBudget(size_t file_bytes) : bytes_(kMaxUnpacked * file_bytes) {}
-  /// Throws std::runtime_error "place: …" when this many bytes are too many.
+  /// Subtracts `bytes`. Throws std::runtime_error "place: …" when fewer remain.
   void Take(size_t bytes, const std::string& place);
 
  private:

@@ -25,8 +25,8 @@ constexpr size_t kMaxJoined = 64;  // inputs of a CONCATENATION
 constexpr int kMaxWindow = 64;     // of a pooling
 constexpr int kDequantize = 6, kDensify = 124;
 
-/// What the file calls an operator, and how many inputs it takes. `options` is the number that the union of options has
-/// for its table; 0 where there is none to read.
+/// Code and names of an operator, and its number of inputs. `options` is the type number of its table in the union of
+/// options; 0 if there is none to read.
 struct KnownOperator {
   TfliteKind kind;
   int code;
@@ -45,7 +45,7 @@ constexpr KnownOperator kKnown[] = {{TfliteKind::kAdd, 0, "ADD", "Add", 2, 2, 11
                                     {TfliteKind::kResizeBilinear, 23, "RESIZE_BILINEAR", "Resize", 2, 2, 15},
                                     {TfliteKind::kPad, 34, "PAD", "Pad", 2, 2, 0}};
 
-/// Whether its second input is an int32 constant.
+/// True if the second input of the operator is an int32 constant.
 bool TakesNumbers(TfliteKind kind) {
   return kind == TfliteKind::kPad || kind == TfliteKind::kReshape || kind == TfliteKind::kResizeBilinear;
 }
@@ -59,9 +59,9 @@ std::string KnownNames() {
 /// A tensor as the file describes it.
 struct Description {
   TfliteType type = TfliteType::kFloat32;
-  TfliteStored stored;    ///< what a folded DEQUANTIZE hands on stays float16 here
+  TfliteStored stored;    ///< float16 also behind a folded DEQUANTIZE
   bool constant = false;  ///< it has values …
-  bool packed = false;    ///< … and is sparse, so that DENSIFY alone may take it
+  bool packed = false;    ///< … and is sparse, so that only DENSIFY may read it
   bool computed = false;  ///< an input of the network, or written by an operator that was read
 };
 
@@ -234,7 +234,7 @@ class TfliteReader {
     AddNodes(op, known->op, place);
   }
 
-  /// DEQUANTIZE and DENSIFY: their output is the same constant under another description; what takes it unpacks it.
+  /// DEQUANTIZE and DENSIFY: their output is the same constant under another description, unpacked by its readers.
   void Fold(int code, int input, int output, const std::string& place) {
     const Description& from = descriptions_[input];
     const bool densify = code == kDensify;
@@ -254,7 +254,7 @@ class TfliteReader {
     to.constant = true;
   }
 
-  /// The input that was added last must be what an operator of this kind takes at place `i`; constants are unpacked.
+  /// Checks that the input added last is valid at position `i` of an operator of this kind; unpacks constants.
   void ResolveInput(const TfliteOperator& op, size_t i, const std::string& place) {
     const int input = op.inputs.back();
     const Description& description = descriptions_[input];

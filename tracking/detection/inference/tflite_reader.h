@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Convolutional networks in TensorFlow Lite's files (.tflite), as far as BlazePose's detector and landmark networks
-/// go.
+/// Reads convolutional networks from TensorFlow Lite files (.tflite), with the operators of BlazePose's detector and
+/// landmark networks.
 ///
 /// The file is a FlatBuffer (flatbuffer.h) of schema version 3 with the letters TFL3 at byte 4. Tables, fields by
 /// number:
@@ -44,11 +44,11 @@
 
 namespace bodyloom {
 
-/// Checks all that is said above, and that each output has the shape that its operator gives it. Bounds: a file of at
-/// most 256 MB, 10,000 tensors, buffers and operators, 2²⁴ numbers a tensor, 2²⁸ in all that is computed, and constants
-/// of at most 16 times the file's bytes once unpacked (sparse ones and shared buffers could claim any number). Throws
-/// std::runtime_error "path: place: what was found, expected what" for anything else: another operator, type, option, a
-/// custom operator, dynamic shapes, values that are not finite, places and sizes that leave the file.
+/// Reads a file with all checks of its format, and of the shapes that operators give their outputs. Bounds: a file of
+/// at most 256 MB, 10,000 tensors, buffers and operators, 2²⁴ numbers a tensor, 2²⁸ in all that is computed, and
+/// constants of at most 16 times the file's bytes once unpacked (sparse ones and shared buffers could claim any
+/// number). Throws std::runtime_error "path: place: what was found, expected what" for anything else: another operator,
+/// type, option, a custom operator, dynamic shapes, values that are not finite, places and sizes that leave the file.
 OperatorGraph ReadTfliteGraph(const std::string& path);
 OperatorGraph ParseTfliteGraph(std::string_view bytes, const std::string& name);
 

@@ -13,14 +13,15 @@ namespace {
 
 int CheckedInt(int64_t value, const std::string& place) {
   if (value < 1 || value > std::numeric_limits<int>::max()) {
-    Refuse(place, Concatenate("a side of ", value, ", expected 1 to ", std::numeric_limits<int>::max()));
+    ThrowFileError(place, Concatenate("a side of ", value, ", expected 1 to ", std::numeric_limits<int>::max()));
   }
   return static_cast<int>(value);
 }
 
 const std::vector<int64_t>& ImageShape(const OperatorGraph::Tensor& tensor, const std::string& place) {
   if (tensor.shape.size() != 4 || tensor.shape[0] != 1) {
-    Refuse(place, "an input of shape " + GraphShapeText(tensor.shape) + ", expected 1 x height x width x channels");
+    ThrowFileError(place,
+                   "an input of shape " + GraphShapeText(tensor.shape) + ", expected 1 x height x width x channels");
   }
   return tensor.shape;
 }
@@ -28,7 +29,8 @@ const std::vector<int64_t>& ImageShape(const OperatorGraph::Tensor& tensor, cons
 /// Rows or columns left by a window.
 int64_t WindowedSize(int64_t size, int window, int stride, bool same, const std::string& place) {
   if (same) return (size - 1) / stride + 1;
-  if (window > size) Refuse(place, Concatenate("a window of ", window, " on ", size, ", expected one that fits"));
+  if (window > size)
+    ThrowFileError(place, Concatenate("a window of ", window, " on ", size, ", expected one that fits"));
   return (size - window) / stride + 1;
 }
 
@@ -43,13 +45,13 @@ std::vector<int64_t> ConvolvedShape(const OperatorGraph& graph, const TfliteOper
   const std::vector<int64_t>& kernel = graph.tensors[op.inputs[1]].shape;
   const bool depthwise = op.kind == TfliteKind::kDepthwiseConv2d;
   if (kernel.size() != 4 || kernel[3] != in[3] || (depthwise && kernel[0] != 1)) {
-    Refuse(place, Concatenate("a kernel of shape ", GraphShapeText(kernel), ", expected ", depthwise ? "1" : "out",
-                              " x height x width x ", in[3]));
+    ThrowFileError(place, Concatenate("a kernel of shape ", GraphShapeText(kernel), ", expected ",
+                                      depthwise ? "1" : "out", " x height x width x ", in[3]));
   }
   const int64_t channels = depthwise ? in[3] : kernel[0];
   if (op.inputs.size() > 2 && graph.tensors[op.inputs[2]].shape != std::vector<int64_t>{channels}) {
-    Refuse(place,
-           Concatenate("a bias of shape ", GraphShapeText(graph.tensors[op.inputs[2]].shape), ", expected ", channels));
+    ThrowFileError(place, Concatenate("a bias of shape ", GraphShapeText(graph.tensors[op.inputs[2]].shape),
+                                      ", expected ", channels));
   }
   return WindowedShape(in, op, channels, place);
 }
@@ -60,7 +62,7 @@ std::vector<int64_t> PooledShape(const OperatorGraph& graph, const TfliteOperato
     const TflitePads rows = SamePads(static_cast<int>(in[1]), op.filter_h, op.stride_h),
                      columns = SamePads(static_cast<int>(in[2]), op.filter_w, op.stride_w);
     if (rows.before + rows.after + columns.before + columns.after > 0) {
-      Refuse(place, "padding SAME that pads, expected VALID");
+      ThrowFileError(place, "padding SAME that pads, expected VALID");
     }
   }
   return WindowedShape(in, op, in[3], place);
@@ -69,7 +71,7 @@ std::vector<int64_t> PooledShape(const OperatorGraph& graph, const TfliteOperato
 std::vector<int64_t> ConcatenatedShape(const OperatorGraph& graph, const TfliteOperator& op, const std::string& place) {
   std::vector<int64_t> shape = graph.tensors[op.inputs[0]].shape;
   if (op.axis < 0 || op.axis >= static_cast<int>(shape.size())) {
-    Refuse(place, Concatenate("axis ", op.axis, ", expected 0 to ", shape.size() - 1));
+    ThrowFileError(place, Concatenate("axis ", op.axis, ", expected 0 to ", shape.size() - 1));
   }
   int64_t along = shape[op.axis];
   for (size_t i = 1; i < op.inputs.size(); ++i) {
@@ -80,8 +82,8 @@ std::vector<int64_t> ConcatenatedShape(const OperatorGraph& graph, const TfliteO
       other[op.axis] = shape[op.axis];
     }
     if (other != shape) {
-      Refuse(place, Concatenate("input ", i, " of shape ", GraphShapeText(graph.tensors[op.inputs[i]].shape),
-                                ", expected ", GraphShapeText(shape), " but for axis ", op.axis));
+      ThrowFileError(place, Concatenate("input ", i, " of shape ", GraphShapeText(graph.tensors[op.inputs[i]].shape),
+                                        ", expected ", GraphShapeText(shape), " but for axis ", op.axis));
     }
   }
   shape[op.axis] = CheckedInt(along, place);
@@ -92,12 +94,12 @@ std::vector<int64_t> PaddedShape(const OperatorGraph& graph, const TfliteOperato
   std::vector<int64_t> shape = ImageShape(graph.tensors[op.inputs[0]], place);
   const OperatorGraph::Tensor& pads = graph.tensors[op.inputs[1]];
   if (pads.shape != std::vector<int64_t>{4, 2}) {
-    Refuse(place, "paddings of shape " + GraphShapeText(pads.shape) + ", expected 4x2");
+    ThrowFileError(place, "paddings of shape " + GraphShapeText(pads.shape) + ", expected 4x2");
   }
   for (size_t i = 0; i < 8; ++i) {
     if (pads.constant.ints[i] < 0 || (i < 2 && pads.constant.ints[i] != 0)) {
-      Refuse(place, Concatenate("padding ", pads.constant.ints[i], " of axis ", i / 2, ", expected ",
-                                i < 2 ? "0" : "0 or more"));
+      ThrowFileError(place, Concatenate("padding ", pads.constant.ints[i], " of axis ", i / 2, ", expected ",
+                                        i < 2 ? "0" : "0 or more"));
     }
   }
   for (size_t i = 1; i < 4; ++i) {
@@ -118,17 +120,19 @@ std::vector<int64_t> ReshapedShape(const OperatorGraph& graph, const TfliteOpera
   const std::vector<int64_t> wanted = graph.tensors[op.inputs[1]].constant.ints.Copy();
   std::vector<int64_t> shape = wanted;
   const auto size = static_cast<int64_t>(GraphShapeSize(in.shape));
-  if (shape.empty() || shape.size() > 4) Refuse(place, Concatenate("to ", shape.size(), " axes, expected 1 to 4"));
+  if (shape.empty() || shape.size() > 4)
+    ThrowFileError(place, Concatenate("to ", shape.size(), " axes, expected 1 to 4"));
   int64_t known = 1;
   for (const int64_t n : shape) {
-    if (n != -1 && (n < 1 || n > size)) Refuse(place, Concatenate("a side of ", n, ", expected -1 or 1 to ", size));
+    if (n != -1 && (n < 1 || n > size))
+      ThrowFileError(place, Concatenate("a side of ", n, ", expected -1 or 1 to ", size));
     if (n > 0) known *= n;
     if (known > size) break;
   }
   const auto open = std::find(shape.begin(), shape.end(), -1);
   if (open != shape.end() && known <= size && size % known == 0) *open = size / known;
   if (open == shape.end() ? known != size : *open < 1 || std::find(open + 1, shape.end(), -1) != shape.end()) {
-    Refuse(place, Concatenate("to ", ListText(wanted), ", expected ", size, " numbers"));
+    ThrowFileError(place, Concatenate("to ", ListText(wanted), ", expected ", size, " numbers"));
   }
   return shape;
 }
@@ -136,7 +140,8 @@ std::vector<int64_t> ReshapedShape(const OperatorGraph& graph, const TfliteOpera
 std::vector<int64_t> ResizedShape(const OperatorGraph& graph, const TfliteOperator& op, const std::string& place) {
   const std::vector<int64_t>& in = ImageShape(graph.tensors[op.inputs[0]], place);
   const SharedNumbers<int64_t>& to = graph.tensors[op.inputs[1]].constant.ints;
-  if (to.size() != 2) Refuse(place, Concatenate("a size of ", to.size(), " numbers, expected height and width"));
+  if (to.size() != 2)
+    ThrowFileError(place, Concatenate("a size of ", to.size(), " numbers, expected height and width"));
   return {1, CheckedInt(to[0], place), CheckedInt(to[1], place), in[3]};
 }
 
@@ -144,7 +149,8 @@ std::vector<int64_t> SpacedShape(const OperatorGraph& graph, const TfliteOperato
   const std::vector<int64_t>& in = ImageShape(graph.tensors[op.inputs[0]], place);
   const int64_t block = op.block_size;
   if (block < 1 || block > in[3] || in[3] % (block * block) != 0) {
-    Refuse(place, Concatenate("blocks of ", block, " of ", in[3], " channels, expected a square that divides them"));
+    ThrowFileError(place,
+                   Concatenate("blocks of ", block, " of ", in[3], " channels, expected a square that divides them"));
   }
   return {1, CheckedInt(in[1] * block, place), CheckedInt(in[2] * block, place), in[3] / (block * block)};
 }
@@ -161,8 +167,9 @@ std::vector<int64_t> TfliteOutputShape(const OperatorGraph& graph, const TfliteO
   switch (op.kind) {
     case TfliteKind::kAdd:
       if (graph.tensors[op.inputs[1]].shape != in) {
-        Refuse(place, Concatenate(GraphShapeText(in), " and ", GraphShapeText(graph.tensors[op.inputs[1]].shape),
-                                  ", expected equal shapes"));
+        ThrowFileError(place,
+                       Concatenate(GraphShapeText(in), " and ", GraphShapeText(graph.tensors[op.inputs[1]].shape),
+                                   ", expected equal shapes"));
       }
       return in;
     case TfliteKind::kLogistic:

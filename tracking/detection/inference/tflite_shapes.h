@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// TensorFlow Lite's operators as tflite_reader.cc reads them, and the shapes that they give their results.
+/// TensorFlow Lite's operators as tflite_reader.cc reads them, and the shapes of their results.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ enum class TfliteKind {
 
 struct TfliteOperator {
   TfliteKind kind = TfliteKind::kAdd;
-  std::vector<int> inputs;  ///< places among the tensors; a bias that is left out is none
-  int output = 0;           ///< place among the tensors
+  std::vector<int> inputs;  ///< indices of tensors, without a bias that is left out
+  int output = 0;           ///< index of a tensor
   bool relu6 = false;       ///< clamp the result to [0, 6]
   bool same_padding = false;
   int stride_h = 1, stride_w = 1;
@@ -44,7 +44,7 @@ struct TflitePads {
 /// when the total is odd: a 3×3 kernel of stride 2 on an even size has 0 before and 1 after.
 TflitePads SamePads(int size, int kernel, int stride);
 
-/// Shape of the operator's result. Its inputs' shapes and the int32 constants must be there. Throws std::runtime_error
+/// Shape of the operator's result. Its inputs' shapes and the int32 constants must be set. Throws std::runtime_error
 /// "place: what was found, expected what" when the inputs do not fit each other.
 std::vector<int64_t> TfliteOutputShape(const OperatorGraph& graph, const TfliteOperator& op, const std::string& place);
 

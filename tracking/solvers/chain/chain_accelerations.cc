@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the accelerations and velocities of ChainProblem's frames cost, and what they give to its matrix: each couples
-// three frames or two.
+// Costs of the accelerations and velocities of ChainProblem's frames, and their blocks of its matrix: an acceleration
+// couples three frames, a velocity two.
 #include <algorithm>
 
 #include "geometry/base/parallel.h"

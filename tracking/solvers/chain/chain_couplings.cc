@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What users' cost functions on several frames (terms/user/user_cost.h) cost, and what they give to ChainProblem's
-// matrix. Two frames in a row: blocks of both, the coupling between them, and their arrow. Frames farther apart would
-// fill the band; with J the rows of all of them, H + JᵀJ is solved instead as the larger arrow
+// Costs of users' cost functions on several frames (problem/user_cost.h), and their part of ChainProblem's matrix. Two
+// consecutive frames: the blocks of both, the coupling between them, and their arrow. Frames farther apart would fill
+// the band; with J the rows of all of them, H + JᵀJ is solved instead as the larger arrow
 //   ⎡ H   Jᵀ ⎤ ⎡ δ ⎤   ⎡ −g ⎤
 //   ⎣ J  −1  ⎦ ⎣ λ ⎦ = ⎣  0 ⎦
 // whose multipliers λ are shared columns like the shape's.

@@ -41,7 +41,7 @@ struct ChainFactor::Panel {
 struct ChainFactor::Half {
   int begin = 0, count = 0, direction = 1;
   bool ok = true;
-  std::vector<Panel>* panels = nullptr;  ///< current, next, second; afterwards what is left for the two middle frames
+  std::vector<Panel>* panels = nullptr;  ///< current, next, second; afterwards the system of the two middle frames
   std::vector<double> shared_sum;        /// (s+1 rounded up)²: minus the arrow's products
 };
 

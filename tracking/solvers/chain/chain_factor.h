@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The linear algebra of the chain solver: a symmetric positive definite matrix of T frames of n values each, coupled
-/// to their two neighbours on each side, and s values shared by all frames (an arrow),
+/// Linear solver of the chain engine, for a symmetric positive definite matrix of T frames of n values each, coupled to
+/// their two neighbours on each side, and s values shared by all frames (an arrow),
 ///
 ///       ⎡ A₀   C₀   D₀             B₀ ⎤
 ///       ⎢ C₀ᵀ  A₁   C₁   D₁        B₁ ⎥      A_t  n×n
@@ -10,15 +10,14 @@
 ///
 /// (or C_t any matrix, ChainSource::DenseNext)
 /// solved exactly by block elimination, frame after frame, shared values last. A frame's elimination costs 4.2 n³
-/// multiplications and additions: C fills up, D does not (U⁻ᵀD stays lower triangular), so a third of a plain band
-/// factorisation's work is left out. Cuts divide the chain into independent segments. A segment is eliminated from both
-/// ends at once and its two middle frames last, which costs nothing extra and makes two tasks that share no data: two
-/// threads work, and the sums are taken in the same order however many threads there are.
+/// multiplications and additions: C fills up, D does not (U⁻ᵀD stays lower triangular), which saves a third of the work
+/// of a plain band factorisation. Cuts divide the chain into independent segments. A segment is eliminated from both
+/// ends at once and its two middle frames last, at no extra cost: two tasks that share no data run in two threads, and
+/// the order of summation is the same for any number of threads.
 ///
-/// Memory: 8 n (2n + s + 4) bytes a frame, and scratch memory that is kept from one solve to the next: where windows of
-/// a few frames are solved again and again, computing it from the system would take as long as the elimination. Source
-/// of the elimination: any text on block band Cholesky; from both ends: "burn at both ends" (twisted) factorisation,
-/// van der Vorst 1987.
+/// Memory: 8 n (2n + s + 4) bytes a frame, and scratch memory that is kept from one solve to the next: allocating it
+/// for each of many solves of a few frames would take as long as the elimination. Source of the elimination: any text
+/// on block band Cholesky; from both ends: "burn at both ends" (twisted) factorisation, van der Vorst 1987.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,7 +28,7 @@
 
 namespace bodyloom {
 
-/// Hands out the matrix and the right-hand side, frame by frame; called from several threads.
+/// Interface that provides the matrix and the right-hand side, frame by frame; called from several threads.
 class ChainSource {
  public:
   virtual ~ChainSource() = default;
@@ -38,8 +37,8 @@ class ChainSource {
   /// n/3 row-major 3×3 blocks of C_t (frame t with t + 1) and D_t (t with t + 2); not requested across cuts.
   [[nodiscard]] virtual const double* Next(int t) const = 0;
   [[nodiscard]] virtual const double* Second(int t) const = 0;
-  /// n×n row-major block that is added to C_t where a coupling is not block diagonal, or null: what a marginal prior
-  /// couples (chain_problem.h), or a cost function on two frames' landmarks. Not requested across cuts.
+  /// n×n row-major block that is added to C_t where a coupling is not block diagonal, or null: from a marginal prior
+  /// (chain_problem.h), or from a cost function on two frames' landmarks. Not requested across cuts.
   [[nodiscard]] virtual const double* DenseNext(int /*t*/) const { return nullptr; }
 };
 
@@ -52,29 +51,30 @@ class ChainFactor {
   ChainFactor(const ChainFactor&) = delete;
   ChainFactor& operator=(const ChainFactor&) = delete;
 
-  /// Solves M x = b. `shared` is S (lower triangle read), `shared_rhs` its right-hand side; the answer lies in
-  /// `frames` (T·n) and `shared_step`. False, with the answer undefined, when M is not positive definite to rounding.
+  /// Solves M x = b. `shared` is S (lower triangle read), `shared_rhs` its right-hand side; the solution is written to
+  /// `frames` (T·n) and `shared_step`. Returns false, with the solution undefined, when M is not positive definite to
+  /// rounding.
   bool Solve(const ChainSource& source, const Eigen::MatrixXd& shared, const Eigen::VectorXd& shared_rhs,
              int num_threads, Eigen::VectorXd* frames, Eigen::VectorXd* shared_step);
 
-  /// From now on the frames marked here (T of them; empty: none) and, while there are any, the shared values keep a
-  /// step of zero: Solve() solves the system of the other frames alone.
+  /// Sets the frozen frames (T flags; empty: none). While there are any, they and the shared values have a step of
+  /// zero: Solve() solves the system of the other frames only.
   void SetFrozen(std::vector<char> frozen);
 
-  /// Blocks of M⁻¹ for the matrix of the last Solve(), which must have succeeded and had no frozen frames: visit(t, P)
-  /// gets, for each frame begin ≤ t < end, the (n + s)² block of its values and, after them, of the shared ones. Frames
-  /// come in no particular order, from up to num_threads threads.
+  /// Computes blocks of M⁻¹ for the matrix of the last Solve(), which must have succeeded and had no frozen frames:
+  /// calls visit(t, P) for each frame begin ≤ t < end with the (n + s)² block of its values and, after them, of the
+  /// shared ones, in no particular order and from up to num_threads threads.
   ///
   /// With rows [U | W₁ | W₂ | Y] of the factor, V = U⁻ᵀ, K_i = U⁻¹W_i, and C = the inverse given the shared values:
   ///   C_tu = −K₁ C_1u − K₂ C_2u (u = the next two frames),   C_tt = VᵀV − K₁ C_1t − K₂ C_2t,
   ///   G_t = −U⁻¹Y − K₁ G_1 − K₂ G_2,   P_tt = C_tt + G_t P_ss G_tᵀ,   P_ts = G_t P_ss
   /// from the middle of a segment, where the elimination ended, outwards as far as requested: 7 n³ multiplications and
-  /// additions a frame, no memory that grows with the clip. Source: Takahashi, Fagan, Chen 1973 (selected inverse).
+  /// additions a frame, constant memory. Source: Takahashi, Fagan, Chen 1973 (selected inverse).
   void VisitInverse(int begin, int end, int num_threads,
                     const std::function<void(int, const Eigen::MatrixXd&)>& visit) const;
 
   [[nodiscard]] int num_frames() const { return static_cast<int>(cut_before_.size()); }
-  /// Another number of frames or other cuts; memory is kept.
+  /// Sets another number of frames or other cuts; memory is kept.
   void SetCuts(std::vector<char> cut_before);
 
  private:

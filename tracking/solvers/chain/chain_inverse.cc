@@ -31,7 +31,7 @@ class ChainFactor::Inverse {
   }
 
   /// Goes to frame t: its rows couple it to no frame (0), to the near one (1), or to the near one and the far one (2).
-  /// It is the near one then, and what was near is far.
+  /// It becomes the near one, and the near one the far one.
   void Step(int t, int neighbours);
   /// Exchanges near and far, to go on from the other end.
   void Turn() {
@@ -75,7 +75,7 @@ class ChainFactor::Inverse {
   Square near_G_, far_G_, new_G_;
 };
 
-/// Scratch memory that nobody uses now.
+/// Pool of unused scratch memory.
 class ChainFactor::InversePool {
  public:
   std::unique_ptr<Inverse> Take(const ChainFactor& factor) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+/// Covariance of a linearised chain's unknowns.
 #pragma once
 
 #include <functional>
@@ -8,13 +9,11 @@
 
 namespace bodyloom {
 
-// Covariance of a linearised chain's unknowns.
-
-/// visit(t, P) for the frames begin ≤ t < end, from up to num_threads threads (ChainFactor::VisitInverse): P is the
-/// (n + s)² covariance H⁻¹ of frame t's columns and of the shared values that are unknown, all other frames being
-/// unknown too. H is the Gauss–Newton matrix at the point that `chain` was linearised at, undamped, with 1e-6 on the
-/// frames' diagonal: what nothing holds keeps a spread of a thousand radians or metres. False, with nothing visited,
-/// when it is not positive definite.
+/// Calls visit(t, P) for the frames begin ≤ t < end, from up to num_threads threads (ChainFactor::VisitInverse): P is
+/// the (n + s)² covariance H⁻¹ of frame t's columns and of the shared values that are unknown, marginalised over all
+/// other frames. H is the Gauss–Newton matrix at the point at which `chain` was linearised, undamped, with 1e-6 added
+/// to the frames' diagonal, so that unconstrained unknowns have a σ of a thousand radians or metres. Returns false,
+/// without a visit, when H is not positive definite.
 bool VisitCovariance(ChainProblem* chain, ChainFactor* factor, int begin, int end, int num_threads,
                      const std::function<void(int, const Eigen::MatrixXd&)>& visit);
 

@@ -17,15 +17,15 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-/// Radians, metres, log focal length: farther than this no quadratic stands for a frame.
+/// Maximum change for which a frame's quadratic model is reused: radians, metres, log focal length.
 constexpr double kFarthestSkip = 0.05;
-/// How far a point of the surface moves with a shape component, about.
+/// Approximate displacement of a point of the surface by a unit of a shape component.
 constexpr double kMetresPerBeta = 0.03;
-/// Information that a frame without any keeps when it is eliminated: a spread of a thousand radians or metres.
+/// Information of an unconstrained frame when it is eliminated: a σ of a thousand radians or metres.
 constexpr double kNothing = 1e-6;
 }  // namespace
 
-/// Borrows an evaluator for one frame. Which one does not matter: they hold scratch memory only.
+/// Borrows an evaluator for one frame. Any will do, since they hold only scratch memory.
 class ChainProblem::Lease {
  public:
   explicit Lease(ChainProblem* owner) : owner_(owner) {
@@ -104,7 +104,7 @@ void ChainProblem::Resize() {
 }
 
 void ChainProblem::Moved(int dropped) {
-  // Frames keep their systems; those that left lend their memory to the new ones.
+  // Frames keep their systems; the memory of removed frames is reused for new ones.
   std::rotate(systems_.begin(), systems_.begin() + dropped, systems_.end());
   std::rotate(anchors_.begin(), anchors_.begin() + dropped, anchors_.end());
   const size_t kept = systems_.size() - static_cast<size_t>(dropped);
@@ -358,7 +358,7 @@ bool ChainProblem::Marginalise(const ChainPoint& point, ChainPrior* prior) const
   const int x_begin = RoundUp(n_), x_columns = RoundUp(size + 1);
   const int64_t stride = panel_internal::RowStride(x_begin + x_columns);
   std::vector<double> panel(static_cast<size_t>(n_ * stride), 0.0);
-  // Rows of what stays; the right-hand side is the last column.
+  // Rows of the remaining unknowns; the right-hand side is the last column.
   const int64_t left_stride = panel_internal::RowStride(size + 1);
   std::vector<double> left(static_cast<size_t>((size + 1) * left_stride), 0.0);
   using Rows = Eigen::Map<RowMatrixXd, 0, Eigen::OuterStride<>>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A SequenceProblem as the chain solver sees it: cost, gradient and Gauss–Newton matrix at a point, in the blocks of
-/// chain_factor.h. Frames come from FrameEvaluator, smoothness from the formulas of residuals/acceleration_cost.h,
-/// shared priors as in sequence_problem.h, users' cost functions on several frames from terms/user; nothing is
-/// approximated.
+/// Evaluates a SequenceProblem for the chain solver: cost, gradient and Gauss–Newton matrix at a point, in the blocks
+/// of chain_factor.h. Frames come from FrameEvaluator, smoothness from the formulas of residuals/acceleration_cost.h,
+/// shared priors as in sequence_problem.h, users' cost functions on several frames from problem/user_cost.h; without
+/// approximation.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,11 +19,10 @@
 
 namespace bodyloom {
 
-// The prior that frames which have left a chain leave on the two that are now first, and on shape and focal length:
-// ½ eᵀ M e + mᵀ e,   e = x ⊟ x̄ = (log(R̄ᵀR) of each active joint, t − t̄ of both frames; β − β̄; log f − log f̄)
-// M and m are what is left of the normal equations when the frames before are eliminated (a Schur complement). For
-// linear measurements nothing is lost by it; for others, what left stays linearised where it was.
-
+/// The marginal prior of removed frames on the first two frames of the chain, and on shape and focal length:
+///   ½ eᵀ M e + mᵀ e,   e = x ⊟ x̄ = (log(R̄ᵀR) of each active joint, t − t̄ of both frames; β − β̄; log f − log f̄)
+/// M and m are the Schur complement of the removed frames in the normal equations. It is exact for linear measurements;
+/// others keep their last linearisation.
 struct ChainPrior {
   bool set = false;
   std::array<FrameState, 2> states;  ///< x̄ of the first two frames
@@ -33,11 +32,11 @@ struct ChainPrior {
   Eigen::VectorXd m;
 };
 
-/// Residuals of couplings between frames that are not neighbours (chain_couplings.cc); a ChainProblem takes at most
-/// ChainProblem::kMaxFarRows.
+/// Number of residuals of couplings between frames that are not neighbours (chain_couplings.cc); a ChainProblem
+/// supports at most ChainProblem::kMaxFarRows.
 int NumFarRows(const SequenceProblem& problem);
 
-/// Where the solver stands.
+/// Values of the unknowns.
 struct ChainPoint {
   std::vector<FrameState> states;
   Eigen::VectorXd betas;
@@ -49,43 +48,43 @@ class ChainProblem : public ChainSource {
   /// The problem is borrowed. Its states, betas and log_focal are not read.
   ChainProblem(const SequenceProblem& problem, bool shape_constant, bool focal_constant, int num_threads);
 
-  /// From now on at most about this many observations of a term of thousands a frame (FrameEvaluator::LimitPoints);
-  /// 0: all.
+  /// Limits the observations used of a term with thousands in a frame (FrameEvaluator::LimitPoints); 0: all.
   void LimitPoints(int max_points);
-  /// From now on a frame is not evaluated where its residuals have moved, since it was linearised last, by less than
-  /// this share of their own size (root mean square: ½ dᵀHd ≤ share² c), and no unknown by more than 0.05 (radians,
-  /// metres, log focal length, 0.03 betas). Its linearisation is reused: cost c + gᵀd + ½ dᵀHd and gradient g + Hd,
-  /// wrong by O(d³) and O(d²) times the residuals' curvature. 0: all frames are evaluated.
+  /// Sets the share below which linearisations are reused: a frame is not evaluated if, since its last linearisation,
+  /// its residuals have changed by less than this share of their size (root mean square: ½ dᵀHd ≤ share² c), and no
+  /// unknown by more than 0.05 (radians, metres, log focal length, 0.03 betas). Then its cost is c + gᵀd + ½ dᵀHd and
+  /// its gradient g + Hd, with errors of O(d³) and O(d²) times the residuals' curvature. 0: all frames are evaluated.
   void ReuseLinearisation(double share) {
     if (share != reuse_share_) linearised_ = false;
     reuse_share_ = share;
   }
-  /// The frames marked here (T of them; empty: none) and the shared values stay where Linearise() was called last:
-  /// until the next call points differ in the other frames only, and those and their neighbours alone are evaluated.
-  /// Exact; shared() and shared_gradient() are not kept up meanwhile. Throws std::invalid_argument unless the last call
-  /// was Linearise(), and with a prior.
+  /// Sets the frozen frames (T flags; empty: none). Until the next call they and the shared values keep their values of
+  /// the last Linearise(), so only the other frames and their neighbours are evaluated. Exact; shared() and
+  /// shared_gradient() are not updated meanwhile. Throws std::invalid_argument unless the last call was Linearise(),
+  /// and with a prior.
   void SetFrozen(std::vector<char> frozen);
-  /// How many frames the last Cost() or Linearise() took from an earlier point.
+  /// Number of frames for which the last Cost() or Linearise() reused an earlier linearisation.
   [[nodiscard]] int num_skipped() const { return num_skipped_; }
-  /// A term beside the problem's own; borrowed, null: none. The problem must have two frames or more, and no couplings.
+  /// Sets a prior in addition to the problem's terms; borrowed, null: none. The problem must have two frames or more,
+  /// and no couplings.
   void SetPrior(const ChainPrior* prior);
 
-  /// The borrowed problem has lost its first `dropped` frames, and may have got new ones at its end, other cuts or
-  /// other shared priors since.
+  /// To be called after the borrowed problem has lost its first `dropped` frames; it may also have new frames at its
+  /// end, other cuts or other shared priors.
   void Moved(int dropped);
-  /// Frame t has other observations than when it was evaluated last.
+  /// To be called after a change of frame t's observations.
   void Forget(int t) {
     anchors_[t].set = false;
     linearised_ = false;
   }
-  /// The marginal of frame 0 and the prior on frames 1 and 2 and shared values, at the point linearised last, `point`.
-  /// False when frame 0's matrix is singular.
+  /// Marginalises frame 0 and the current prior to a prior on frames 1 and 2 and the shared values, at the point
+  /// linearised last, `point`. Returns false when frame 0's matrix is singular.
   bool Marginalise(const ChainPoint& point, ChainPrior* prior) const;
 
-  /// Cost alone; NaN where a frame's is not finite.
+  /// Evaluates only the cost; NaN if a frame's is not finite.
   double Cost(const ChainPoint& point);
-  /// Cost, and everything that the factorisation needs. Costs nothing at the point where it was called last, unless
-  /// Cost() was called or something was changed since.
+  /// Evaluates the cost, and everything that the factorisation needs. Returns at once at the point of the last call,
+  /// unless Cost() was called or something was changed since.
   double Linearise(const ChainPoint& point);
 
   // At the point linearised last.
@@ -94,7 +93,7 @@ class ChainProblem : public ChainSource {
   [[nodiscard]] const Eigen::VectorXd& diagonal() const { return diagonal_; }                ///< of the matrix, T·n
   [[nodiscard]] const Eigen::MatrixXd& shared() const { return shared_; }                    ///< s×s, undamped
   [[nodiscard]] Eigen::VectorXd shared_diagonal() const { return shared_.diagonal() + far_shared_diagonal_; }
-  /// What ChainFactor takes for shared values: S with its damping, and behind it the multipliers of far couplings.
+  /// The shared block for ChainFactor: S with its damping, followed by the multipliers of far couplings.
   [[nodiscard]] Eigen::MatrixXd Arrow(const Eigen::VectorXd& damping) const;
 
   /// Damping that AddFrame adds to the diagonal (T·n values).
@@ -107,7 +106,7 @@ class ChainProblem : public ChainSource {
 
   [[nodiscard]] int frame_size() const { return n_; }
   [[nodiscard]] int shared_size() const { return static_cast<int>(shared_columns_.size()); }
-  /// With the multipliers of couplings between frames that are not neighbours (chain_couplings.cc).
+  /// Including the multipliers of couplings between frames that are not neighbours (chain_couplings.cc).
   [[nodiscard]] int arrow_size() const { return shared_size() + num_far_rows_; }
   [[nodiscard]] int num_far_rows() const { return num_far_rows_; }
   static constexpr int kMaxFarRows = 400;
@@ -128,7 +127,7 @@ class ChainProblem : public ChainSource {
     std::vector<Eigen::Vector3d> step;
     std::vector<Eigen::Matrix3d> right;  ///< RightJacobianInverse of the rotations' steps
   };
-  /// Where a frame's system was evaluated.
+  /// The point at which a frame's system was evaluated.
   struct Anchor {
     bool set = false;
     FrameState state;
@@ -142,7 +141,7 @@ class ChainProblem : public ChainSource {
     UserResidual at;
     int first_far_row = -1;  ///< of its multipliers; −1: of two frames in a row, which have none
   };
-  /// A coupling and the place of a frame among those that it reads.
+  /// A coupling and the index of a frame among those that it reads.
   struct CouplingOfFrame {
     int index, k;
   };
@@ -154,15 +153,15 @@ class ChainProblem : public ChainSource {
   void AddPrior();
   double EvaluateFrames(const ChainPoint& point, bool derivatives);
   [[nodiscard]] bool IsFrozen(size_t t) const { return !frozen_.empty() && frozen_[t] != 0; }
-  /// Whether the accelerations that frames first … last take part in are as they were.
+  /// True if frames first … last are frozen, so that costs of these frames have not changed.
   [[nodiscard]] bool AllFrozen(int64_t first, int64_t last) const;
   double EvaluateChanges(const ChainPoint& point, bool derivatives);
   void ResizeCouplings();
   double EvaluateCouplings(const ChainPoint& point, bool derivatives);
   void EvaluateCoupling(const ChainPoint& point, bool derivatives, Coupling* coupling) const;
-  /// Adds to frame t's rows what its couplings give: AddFrame() without gradient and damping.
+  /// Adds the couplings' part of frame t's rows: AddFrame() without gradient and damping.
   void AddCouplings(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const;
-  /// Adds to frame t's gradient and diagonal what its couplings give.
+  /// Adds the couplings' part of frame t's gradient and diagonal.
   void AssembleCouplings(int t);
   void SumSharedOfCouplings();
   /// Column of a coupling's Jacobian for one of shared_columns_.
@@ -177,7 +176,7 @@ class ChainProblem : public ChainSource {
     return inverse_sigma_[inverse_sigma_.size() > 1 ? shot_[t] : 0];
   }
   void AccelerationOf(size_t end, int a, Eigen::Matrix3d J[3], Eigen::Array3d* weight, Eigen::Vector3d* force) const;
-  /// Blocks of the matrix and gradient that the accelerations of frames t, t + 1 and t + 2 give to frame t.
+  /// Computes frame t's blocks of matrix and gradient from the accelerations that end at frames t, t + 1 and t + 2.
   void AssembleAcceleration(size_t t);
   /// Adds those of the velocities that end at frames t and t + 1.
   void AssembleVelocity(size_t t);
@@ -185,7 +184,7 @@ class ChainProblem : public ChainSource {
   const SequenceProblem& problem_;
   int n_, blocks_, num_threads_, max_points_ = 0, num_skipped_ = 0;
   double reuse_share_ = 0;
-  bool linearised_ = false;  ///< all that Linearise() makes is there, for this point
+  bool linearised_ = false;  ///< true if the results of Linearise() are valid, for the point below
   ChainPoint linearised_at_;
   double linearised_cost_ = 0;
   std::vector<int> shared_columns_;  ///< columns of a frame's matrix that are unknown and shared
@@ -194,7 +193,7 @@ class ChainProblem : public ChainSource {
   Eigen::VectorXd shape_offset_;
   std::vector<FrameSystem> systems_;                        ///< T, at their anchors
   std::vector<Anchor> anchors_;                             ///< T
-  std::vector<char> skipped_;                               ///< T: the last evaluation took the anchor's
+  std::vector<char> skipped_;                               ///< T: the last evaluation reused the anchor's
   std::vector<Eigen::VectorXd> frame_gradient_;             ///< T, at the point linearised last
   std::vector<Change> changes_;                             ///< T
   std::vector<AccelerationFactors> factors_;                ///< T, of the acceleration that ends at each frame
@@ -207,7 +206,7 @@ class ChainProblem : public ChainSource {
   std::vector<double> next_, second_, own_;                 ///< T × n/3 blocks of 9
   Eigen::VectorXd gradient_, shared_gradient_, diagonal_;
   Eigen::MatrixXd shared_;
-  Eigen::VectorXd far_shared_diagonal_;  ///< what far couplings add to that of shared_
+  Eigen::VectorXd far_shared_diagonal_;  ///< the far couplings' part of the diagonal of shared_
   std::vector<Coupling> couplings_;
   std::vector<std::vector<CouplingOfFrame>> pairs_of_frame_, far_of_frame_;  ///< T, or empty
   std::vector<RowMatrixXd> pair_next_;  ///< T, or empty: n×n of frame t with t + 1, or nothing
@@ -217,7 +216,7 @@ class ChainProblem : public ChainSource {
   Eigen::MatrixXd prior_matrix_;  ///< at the point linearised last
   Eigen::VectorXd prior_gradient_;
   RowMatrixXd prior_next_;                                   ///< first frame with the second
-  std::vector<std::unique_ptr<FrameEvaluator>> evaluators_;  ///< that nobody uses now
+  std::vector<std::unique_ptr<FrameEvaluator>> evaluators_;  ///< not in use now
   std::mutex evaluators_mutex_;
 };
 

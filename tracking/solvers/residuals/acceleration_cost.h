@@ -41,11 +41,11 @@ class VectorAccelerationCost : public ceres::SizedCostFunction<3, 3, 3, 3> {
   double scale0_[3], scale1_[3];
 };
 
-// Velocities cost something (L_t of paper A, Σ ‖θ_t − θ_{t±1}‖ + ‖C_t − C_{t±1}‖, squared and by seconds).
+// Penalty on velocities (L_t of paper A, Σ ‖θ_t − θ_{t±1}‖ + ‖C_t − C_{t±1}‖, squared and per second).
 //
 // Rotation: r = log(R₀ᵀR₁)/Δ / σ, angular velocity of a joint relative to its parent, rad/s. Vector: (x₁ − x₀)/Δ / σ.
-// Δ is the frames' time step in seconds. Two consecutive frames; never used across a gap or a cut. Beside the
-// accelerations (acceleration_cost.h) it damps fast motion: a choice for still people, off unless asked for.
+// Δ is the frames' time step in seconds. Two consecutive frames; never used across a gap or a cut. Unlike the penalty
+// on accelerations it damps fast motion; it suits people who hardly move, and is off by default.
 
 /// Derivatives of log(R₀ᵀR₁) by right increments of R₀ and R₁, given its RightJacobianInverse.
 void RotationStepJacobians(const Eigen::Matrix3d& right, Eigen::Matrix3d J[2]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The robust kernel of robust.h for Ceres' own use: ρ(s) = c² s / (c² + s).
+/// Loss, prior and manifold for Ceres.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -13,6 +13,7 @@
 
 namespace bodyloom {
 
+/// The robust kernel of robust.h: ρ(s) = c² s / (c² + s).
 class GemanMcClureLoss : public ceres::LossFunction {
  public:
   /// c > 0 in standard deviations.
@@ -53,9 +54,9 @@ class LinearCost : public ceres::CostFunction {
 
 // SO(3) stored as axis-angle: Plus(w, δ) = log(exp(w) exp(δ)).
 //
-// PlusJacobian is declared the identity: cost functions on such blocks give their derivatives by the increment δ
-// directly ("lifted" Jacobians), which saves a 3×3 product for each block and is exact because Ceres only ever uses
-// the product of the two. A block must therefore not be mixed with cost functions that differentiate by w.
+// PlusJacobian is the identity: cost functions on such blocks return their derivatives by the increment δ directly
+// ("lifted" Jacobians), which saves a 3×3 product for each block and is exact because Ceres only uses the product of
+// the two. Such blocks must therefore not be used with cost functions that differentiate by w.
 
 class RotationManifold : public ceres::Manifold {
  public:

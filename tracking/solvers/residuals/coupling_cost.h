@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A user's cost function on several frames (terms/user/user_cost.h) as a Ceres cost function of the clip's parameters,
+/// A user's cost function on several frames (problem/user_cost.h) as a Ceres cost function of the clip's parameters,
 /// before its loss.
 #pragma once
 

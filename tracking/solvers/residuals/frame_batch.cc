@@ -112,7 +112,7 @@ class FrameBatch::CachedCost : public ceres::CostFunction {
     set_num_residuals(g.num_rows);
   }
   bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
-    // Ceres prepares every point but that of a problem's first look at constant blocks.
+    // Ceres prepares every point except the one at which a problem first evaluates constant blocks.
     if (!batch_->is_prepared_ || (jacobians != nullptr && !batch_->has_jacobians_)) {
       batch_->PrepareForEvaluation(jacobians != nullptr, true);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The terms of all frames of a clip as Ceres cost functions that are evaluated together: once for each new point, the
-/// frames spread over threads, and the cost functions hand out what lies ready.
+/// The terms of all frames of a clip as Ceres cost functions that are evaluated together: once for each new point, with
+/// the frames distributed over threads; the cost functions then return the cached results.
 ///
 /// A cost function is one group of a frame's residuals (FrameRows, frame_cost.h), before its loss. Its parameter blocks
 /// are those that the group depends on, of: the axis-angle of each active joint, the translation, the betas and the
@@ -31,7 +31,7 @@ class FrameBatch : public ceres::EvaluationCallback {
     ResidualGroup group;  ///< `blocks` are indices into what Add() was given as parameters
     std::unique_ptr<ceres::CostFunction> cost;
   };
-  /// Takes a frame, with the parameter blocks of all its unknowns in the layout's order; `held` gives the rotations of
+  /// Adds a frame, with the parameter blocks of all its unknowns in the layout's order; `held` gives the rotations of
   /// joints that are not active. All are borrowed; the cost functions must not outlive the batch.
   std::vector<Entry> Add(const FrameLayout& layout, const FrameData& data, const FrameState& held,
                          const std::vector<double*>& parameters);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Dense keypoints, L_f of paper A: a point of the surface should appear at the pixel where the detector saw it.
+/// Dense keypoints, L_f of paper A: the reprojection error of surface points.
 ///   ½ Σ_k w ρ(‖W_k (π(x_k) − y_k)‖²)      ρ: Geman–McClure with c = `kernel`
 /// x_k: face and barycentric coordinates of the detection, posed, camera frame, metres; W_k = I/σ_k, or the inverse
-/// root of the keypoint's covariance (dense_whitening.h), 1/px. Keypoints that another term takes (`taken`) are left
-/// out. w = 1, or the number that each of the evenly chosen keypoints stands for (FrameAccumulator::max_points; frames
-/// with `taken` use all). What cannot be projected costs c²/2 and is counted. Many points share few joints, so their
-/// normal equations are summed set by set (dense_points.h). Runs when the input has dense keypoints.
+/// root of the keypoint's covariance (dense_whitening.h), 1/px. Keypoints that another term uses (`taken`) are
+/// excluded. w = 1, or the number that each of the evenly chosen keypoints represents (FrameAccumulator::max_points;
+/// frames with `taken` use all). Points that cannot be projected cost c²/2 and are counted. Many points share few
+/// joints, so their normal equations are summed by set of joints (dense_points.h). Runs when the input has dense
+/// keypoints.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +27,7 @@ struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
-/// How a dense keypoint's error lies in the image (dense_whitening.h).
+/// Whitening of a dense keypoint's error in the image (dense_whitening.h).
 struct DenseWhitening {
   Eigen::Matrix2d whitening;    ///< W, 1/px
   Eigen::Matrix2d pixel_by_uv;  ///< M = ∂pixel/∂(u, v) at the label, pixels a chart; zero where there is none

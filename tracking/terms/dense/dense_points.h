@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Many surface points of one frame: where they are, and what they give to the normal equations.
+/// Poses many surface points of one frame, and adds their residuals to the normal equations.
 ///
-/// A point moves with few joints (six on average on the built-in body, of 24), so points are sorted by the set of
-/// joints that move them; each set's rows hold columns for its joints, translation, shape and focal length only, and
-/// JᵀJ of these narrow rows is added to the frame's matrix once a set. Nothing is left out: the columns not held are
-/// zero.
+/// A point moves with few joints (six on average on the built-in body, of 24), so points are grouped by the set of
+/// joints that move them; each set's rows have columns only for its joints, translation, shape and focal length, and
+/// JᵀJ of these narrow rows is added to the frame's matrix once a set. This is exact: all other columns are zero.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +27,7 @@ class DensePoints {
     Eigen::Matrix<double, 2, 3> translation;
     Eigen::Vector2d focal, residual;
   };
-  /// In which columns of the frame's matrix the unknowns stand.
+  /// Columns of the unknowns in the frame's matrix.
   struct Columns {
     const std::vector<int>* of_joint = nullptr;  ///< J, −1: held
     int translation = 0, beta = 0, focal = -1;

@@ -69,7 +69,7 @@ HWY_INLINE void AddBlock(const double (&A)[2][4], const float* HWY_RESTRICT bloc
   }
 }
 
-/// Where a vertex is: computed when it is requested first in a frame.
+/// Posed position of a vertex, computed at its first use in a frame.
 const double* PosedVertex(const Body& body, const Frame& frame, const Vertices& vertices, int v) {
   double* HWY_RESTRICT posed = vertices.posed + 3 * static_cast<int64_t>(v);
   if (vertices.posed_stamp[v] == vertices.frame) return posed;
@@ -134,7 +134,7 @@ void PosePointsHere(const Body& body, const Frame& frame, const Vertices& vertic
   }
 }
 
-/// What one vertex of a point adds: its weight in the point times …
+/// Part of one vertex of a point: its weight in the point times …
 struct Corner {
   double A[2][4];      ///< … A M, M = Σ w G: by the rest vertex
   const float* shape;  ///< its rows of shapedirs
@@ -232,7 +232,7 @@ void FillRowsHere(const Body& body, const Frame& frame, const Vertices& vertices
       bone_joints[k] = group.joints[bones[k]];
       for (int c = 0; c < 6; ++c) bone_A[k][c / 3][c % 3] = w * a[c];
     }
-    // From the leaves up: what a joint moves, its parent moves too.
+    // From the leaves up, since a parent also moves everything that its child moves.
     for (int q = N - 1; q >= 0; --q) {
       if (group.parent[q] < 0) continue;
       double* HWY_RESTRICT sum = moved[group.parent[q]];

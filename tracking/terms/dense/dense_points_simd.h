@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Inner loops of dense_points.h: surface points posed, and their derivatives by the few joints that move
-/// them. Plain arrays of double and no Eigen, because this is compiled once per instruction set and the best one is
-/// chosen at run time. 3×3 matrices lie column by column, as Eigen holds them.
+/// Inner loops of dense_points.h: poses surface points, and computes their derivatives by the few joints that move
+/// them. Plain arrays of double without Eigen, because this is compiled once per instruction set and the best one is
+/// selected at run time. 3×3 matrices are column-major, as in Eigen.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Body {
   int shape_stride = 0, num_joints = 0;
 };
 
-/// The kinematic tree of one frame (body_points.h), in rows of four values, which vectors read at once.
+/// The kinematic tree of one frame (body_points.h), in rows of four values for vector loads.
 struct Frame {
   int num_betas = 0, dt_stride = 0;
   const double* betas = nullptr;
@@ -50,7 +50,7 @@ struct Point {
   double weight[3];  ///< sum to 1
 };
 
-/// Posed positions, n × 3.
+/// Computes posed positions, n × 3.
 void PosePoints(const Body& body, const Frame& frame, const Vertices& vertices, const Point* points, int n, double* x);
 
 /// Joints that move the points of a group, ascending, with all their ancestors (and the joints of correctives).
@@ -65,8 +65,8 @@ struct Group {
 
 inline constexpr int kMaxGroupJoints = 256;
 
-/// For points that PosePoints has posed in this frame: two rows each, A ∂x/∂δ_j and A ∂x/∂β, A the point's 2×3 matrix
-/// row by row. The column behind the last joint's is overwritten; others are left alone.
+/// Fills two rows for each point that PosePoints has posed in this frame: A ∂x/∂δ_j and A ∂x/∂β, A the point's 2×3
+/// matrix, row-major. The column after the last joint's is overwritten; other columns are not changed.
 void FillRows(const Body& body, const Frame& frame, const Vertices& vertices, const Group& group, const Point* points,
               const int* chosen, int n, const double* A, double* rows, int64_t stride);
 

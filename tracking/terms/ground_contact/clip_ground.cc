@@ -30,7 +30,7 @@ Vector3d InCamera(const FrameData& frame, const Vector3d& direction) {
                                             : frame.camera_from_scene->camera_from_world_rotation * direction;
 }
 
-/// What the lifter says of up, in the scene.
+/// The lifter's up direction, in the scene.
 UpEstimate UpInScene(std::span<const LiftedFrame> lifted, std::span<const FrameData> frames) {
   if (frames.front().camera_from_scene == nullptr) return EstimateUp(lifted);
   std::vector<LiftedFrame> turned(lifted.begin(), lifted.end());
@@ -81,7 +81,7 @@ void ClipGround::SetUpright(const Shot& shot, const Vector3d& up, SequenceProble
     FrameData& frame = problem->frames[t];
     const Vector3d up_in_camera = InCamera(frame, up);
     const Vector3d level = Vector3d::UnitZ() - up_in_camera.z() * up_in_camera;
-    // Seen from straight above or below, no direction of lean is hidden more than another.
+    // Seen from straight above or below, no direction of lean is more ambiguous than another.
     if (level.norm() >= 0.1) frame.Get<UprightTerm>().normal = level.normalized();
   }
 }
@@ -107,7 +107,7 @@ GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& 
   GroundPlaneOptions options;
   if (known_ == nullptr) return EstimateGroundPlane(feet, timestamps, up, options);
   if (known_->has_plane) {
-    // Somebody may stand on a box: then the plane is not theirs, but the vertical is.
+    // Somebody may stand on a box: then the plane does not apply to them, but the vertical does.
     GroundPlane known = StandOnPlane(feet, timestamps, up, kAnkleHeight - known_->camera_height_m, options);
     if (known.found) return known;
   }
@@ -117,7 +117,8 @@ GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& 
 
 bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) {
   if (lifted_.empty() || !why_not_.empty()) return false;
-  const std::vector<std::array<FootPlace, 2>> all_feet = SeenFeet(*coarse, frames, lifted_, landmarks_, *keypoints_);
+  const std::vector<std::array<FootPlace, 2>> all_feet =
+      ObservedFeet(*coarse, frames, lifted_, landmarks_, *keypoints_);
   standing_speed_mps_ = StandingSpeed(all_feet, coarse->timestamps, {});
   std::vector<char> held(lifted_.size(), 0);
   bool any = false;

@@ -17,20 +17,21 @@
 
 namespace bodyloom {
 
-/// Without lifted frames, or switched off, it changes nothing.
+/// Without lifted frames, or if switched off, it has no effect.
 class ClipGround : public ClipTerm {
  public:
   explicit ClipGround(const ClipTermInput& clip);
 
   void Observe(SequenceProblem* problem) override;
-  /// The vertical of each shot.
+  /// Estimates the vertical of each shot.
   void BeginFit(SequenceProblem* problem) override;
 
-  /// Looks for the ground with the states of `coarse`, which holds `frames` of the clip. True when there is one: then
-  /// `coarse` and `problem` (the whole clip) have their feet held and their trunks measured against its normal.
+  /// Estimates the ground from the states of `coarse`, which holds `frames` of the clip. Returns true if one was found:
+  /// then in `coarse` and `problem` (the whole clip) standing feet are held, and the trunk's lean is relative to its
+  /// normal.
   bool LearnFrom(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) override;
 
-  /// Of the longest shot, with the answer in `problem` (the whole clip).
+  /// Summarises the longest shot, with the solution in `problem` (the whole clip).
   void Summarise(const SequenceProblem& problem, TrackSequenceSummary* summary) const override;
 
  private:
@@ -43,7 +44,7 @@ class ClipGround : public ClipTerm {
   /// The plane that feet stand on in a shot whose vertical is found.
   [[nodiscard]] GroundPlane PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
                                        const std::vector<double>& timestamps, const Eigen::Vector3d& up) const;
-  /// Where the answer puts the stances.
+  /// Sets the stances' positions on the floor from the solved states.
   void PlaceOnFloor(const SequenceProblem& problem, const Eigen::Vector3d& up,
                     std::vector<StandingFoot>* stances) const;
   void SetUpright(const Shot& shot, const Eigen::Vector3d& up, SequenceProblem* problem) const;

@@ -17,15 +17,10 @@ using Eigen::Vector3d;
 void GroundContactTerm::Add(FrameAccumulator* sums) const {
   if (feet.empty()) return;
   const FrameLayout& layout = sums->layout();
+  // Except for weak perspective the kinematics include the translation.
   const bool weak = layout.knowledge == CameraKnowledge::kWeak;
-  const Vector3d origin = layout.BodyPlace(sums->state());
-  const Vector3d offset = weak ? origin : Vector3d::Zero();  // elsewhere the kinematics have the translation
-  Matrix3d d_origin = Matrix3d::Identity();
-  if (weak) {
-    d_origin.col(0) = -origin.z() * Vector3d::UnitZ();
-    d_origin.col(1) = Vector3d::UnitX();
-    d_origin.col(2) = Vector3d::UnitY();
-  }
+  const Vector3d offset = weak ? layout.BodyPlace(sums->state()) : Vector3d::Zero();
+  const Matrix3d d_place = layout.BodyPlaceByTranslation(sums->state());
   for (const GroundContact& contact : feet) {
     const Vector3d x = sums->points().Evaluate(sums->kinematics(), *contact.point, sums->derivatives()) + offset;
     const Vector3d residual = contact.whitening * (x - contact.target_m);
@@ -33,7 +28,7 @@ void GroundContactTerm::Add(FrameAccumulator* sums) const {
     if (!sums->derivatives()) continue;
     auto rows = sums->NextRows(3);
     sums->FillPointRows(rows);
-    rows.middleCols<3>(layout.translation_column) = d_origin;
+    rows.middleCols<3>(layout.translation_column) = d_place;
     const RowMatrixXd d_x = rows;
     rows.noalias() = scale * contact.whitening * d_x;
     sums->NextResiduals(3) = scale * residual;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A foot that stands: a point of it should be where it was put down.
+/// Standing feet: holds a point of the foot at the position of its stance.
 ///   ½ ρ(‖W (x + o − a)‖²)                ρ: Geman–McClure
-/// x: the point relative to the body's origin, o = FrameLayout::BodyPlace, so a is in the camera frame, metres, for
-/// every kind of camera, of one that moves in that of this frame. W = diag(1/σ_slide, 1/σ_slide, 1/σ_height) in axes
-/// whose third is the ground's normal, times the root of the weight. a lies on the ground; it is an estimate of
-/// initialise/ground_plane.h and held fixed here, so that frames stay uncoupled. Derivatives: ∂x/∂θ of
-/// tracking/problem/body_points.h; ∂o/∂t = I, and for weak perspective ∂o/∂(log s, tx, ty) = (−o_z e_z, e_x, e_y). Runs
-/// in frames in which clip_ground.h found a standing foot.
+/// x: the point relative to the body's origin, o = FrameLayout::BodyPlace, so a is in the frame's camera frame, metres,
+/// for every kind of camera. W = diag(1/σ_slide, 1/σ_slide, 1/σ_height) in axes whose third is the ground's normal,
+/// times the root of the weight. a lies on the ground; it is an estimate of initialise/ground_plane.h and constant
+/// here, so that frames are not coupled. Derivatives: ∂x/∂θ of tracking/problem/body_points.h; ∂o/∂t = I, and for weak
+/// perspective ∂o/∂(log s, tx, ty) = (−o_z e_z, e_x, e_y). Runs in frames in which clip_ground.h found a standing foot.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,7 +38,7 @@ class GroundContactTerm : public CopyableTerm<GroundContactTerm> {
   void Add(FrameAccumulator* sums) const override;
 };
 
-/// Why no ground is looked for, or empty when one is.
+/// The reason why no ground is estimated; empty if one is.
 std::string WhyNoGround(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::vector<PlanEntry> PlanGround(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 

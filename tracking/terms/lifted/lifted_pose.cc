@@ -124,7 +124,7 @@ class LiftedPoseTerms : public ClipTerm {
 }  // namespace
 
 std::unique_ptr<ClipTerm> MakeLiftedPoseTerms(const ClipTermInput& clip) {
-  // With an initialiser of the user's own the lifter is asked for the vertical and standing feet alone.
+  // With a user's initialiser the lifter is used only for the vertical and standing feet.
   if (clip.input.initialiser != nullptr || clip.lifted.frames.empty()) return nullptr;
   return std::make_unique<LiftedPoseTerms>(clip);
 }

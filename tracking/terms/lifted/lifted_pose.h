@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// L_d of paper A when the initialiser is the lifter: landmarks relative to the mid-hip should be where it predicts
-/// them, each as firmly as its own uncertainty allows.
+/// L_d of paper A with the lifter as initialiser: distance of the landmarks relative to the mid-hip from its
+/// predictions, weighted by their uncertainty.
 ///   ½ w Σ_k ρ(‖W_k (x_k − ½(x_left_hip + x_right_hip) − y_k)‖²)     ρ: Geman–McClure
-/// W_k = R diag(1/σ_xy, 1/σ_xy, 1/σ_z) Rᵀ with R the axes in which the lifter looked. What it adds is
-/// depth; across the view the image is the better measurement: σ_xy rarely decides.
+/// W_k = R diag(1/σ_xy, 1/σ_xy, 1/σ_z) Rᵀ with R the axes of the lifter's virtual camera. It adds information mainly on
+/// depth; across the view the image is more accurate, so σ_xy has little effect.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ struct LiftedPose {
     int landmark = 0;
     Eigen::Vector3d offset;     ///< from the mid-hip, camera axes, metres
     Eigen::Matrix3d whitening;  ///< 1/m
-    /// m²: of the lifter's density, R diag(4 σ_xy², 4 σ_xy², 4 σ_z²) Rᵀ (lifter_reading.h says of which)
+    /// m²: of the lifter's density, R diag(4 σ_xy², 4 σ_xy², 4 σ_z²) Rᵀ (lifter_reading.h)
     Eigen::Matrix3d covariance;
   };
   const LiftedLandmarks* landmarks = nullptr;

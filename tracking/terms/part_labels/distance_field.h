@@ -23,8 +23,8 @@ class DistanceField {
     kUnknown,
   };
 
-  /// Region of the pixels that `fill_row(y, row)` calls kInside; it writes the `width` pixels from (x_begin, y) on. The
-  /// grid covers the rectangle of width × height pixels from (x_begin, y_begin); outside it nothing is looked at.
+  /// Region of the pixels that `fill_row(y, row)` marks kInside; it writes the `width` pixels from (x_begin, y) on. The
+  /// grid covers the rectangle of width × height pixels from (x_begin, y_begin); pixels outside it are not used.
   /// `cell_px` at least 1. Without a pixel inside (or outside) the distance to it counts as the rectangle's diagonal.
   DistanceField(int x_begin, int y_begin, int width, int height, int cell_px,
                 const std::function<void(int y, Pixel* row)>& fill_row);

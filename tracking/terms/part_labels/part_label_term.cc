@@ -19,13 +19,13 @@ using Eigen::Vector3d;
 
 constexpr uint8_t kBackground = PartLabelSequence::kBackground, kUnknown = PartLabelSequence::kUnknown;
 constexpr int kFieldCells = 128;  ///< a field has about this many cells along the person
-constexpr int kMinCellPx = 3;     ///< finer cells would show the stairs of the mask in the field's slope
-constexpr int kMarginCells = 10;  ///< around what the field is of; farther away it goes on as a cone
+constexpr int kMinCellPx = 3;     ///< with finer cells the field's gradient would show the mask's pixel steps
+constexpr int kMarginCells = 10;  ///< around the region of the field; farther away it is extended as a cone
 constexpr int kMaxSilhouette = 160, kMaxPartBoundary = 10, kMaxPartContour = 12, kMaxInside = 10;
 constexpr double kAlongBoundary = 0.2;     ///< τ
 constexpr double kInsideSigmas = 3;        ///< σ of "somewhere on this part"
 constexpr double kBehindTolerance = 0.02;  ///< metres: neighbouring pixels of one surface
-constexpr double kBoundaryReach = 0.25;    ///< of the person's height: farther apart nothing corresponds
+constexpr double kBoundaryReach = 0.25;    ///< of the person's height: maximum distance of correspondences
 
 /// At most n of `items`, evenly spread.
 template <typename T>
@@ -36,7 +36,7 @@ std::vector<T> Thinned(const std::vector<T>& items, size_t n) {
   return result;
 }
 
-/// One part for the whole person: what clothes and hair add to it is part of it.
+/// True for one part for the whole person, which includes clothes and hair.
 bool IsMask(const PartLabelSequence& labels) {
   const auto is_same = [&](uint8_t part) { return part == labels.part_of_chart[1]; };
   return std::all_of(labels.part_of_chart.begin() + 1, labels.part_of_chart.begin() + kUnknown, is_same);
@@ -58,7 +58,7 @@ PartLabelMatches::PartLabelMatches(const PartLabelSequence& labels, int t, std::
   AddField(map, kBackground);
   int parts = 0;
   for (int p = 1; p < kUnknown; ++p) parts += pixels_of_part_[p] > 0;
-  if (parts > 1 && options.part_weight > 0) {  // a mask does not know parts
+  if (parts > 1 && options.part_weight > 0) {  // a mask has no parts
     for (int p = 1; p < kUnknown; ++p) {
       if (pixels_of_part_[p] >= kMinPartPixels) AddField(map, static_cast<uint8_t>(p));
     }
@@ -100,7 +100,7 @@ void PartLabelMatches::FindBoxes(const PartMap& map) {
 }
 
 void PartLabelMatches::AddField(const PartMap& map, uint8_t part) {
-  // Beyond the image nothing is known; one cell of it is enough for the field.
+  // Pixels beyond the image are unknown; one cell of them is enough for the field.
   const PixelBox box = boxes_[part].GrownBy(kMarginCells * cell_px_).ClippedTo(map.image.GrownBy(cell_px_));
   using Pixel = DistanceField::Pixel;
   std::array<Pixel, 256> kind;  // by part
@@ -332,6 +332,8 @@ void PartLabelMatches::Weigh() {
       options_.silhouette_weight * std::min(1.0, kSilhouetteCount / std::max(1.0, count[1]))};
   for (Target& target : targets_) target.weight = weight[target.is_silhouette];
   for (ContourPoint& point : contour_) point.weight = weight[point.is_silhouette];
+  for (const Target& target : targets_) num_rows_[target.is_silhouette] += 2;
+  for (const ContourPoint& point : contour_) ++num_rows_[point.is_silhouette];
 }
 
 void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas,
@@ -339,6 +341,7 @@ void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& s
   targets_.clear();
   contour_.clear();
   kernel_ = kernel;
+  num_rows_ = {0, 0};
   silhouette_unmatched_ = part_unmatched_ = 0;
   if (num_person_pixels_ == 0) return;
   const BodyModel& model = *layout.model;
@@ -355,42 +358,41 @@ void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& s
   Weigh();
 }
 
-void PartLabelTerm::Add(FrameAccumulator* sums) const {
-  if (term == nullptr) return;
+void AddMatches(const PartLabelMatches& matches, bool of_silhouette, FrameAccumulator* sums) {
   const MatrixX3i& faces = sums->layout().model->data().faces;
   const Kinematics& kinematics = sums->kinematics();
   const bool derivatives = sums->derivatives();
-  PixelResiduals* silhouette = sums->residuals("silhouette");
-  PixelResiduals* parts = sums->residuals("part labels");
-  for (const PartLabelMatches::Target& target : term->targets()) {
+  PixelResiduals* residuals = sums->residuals(of_silhouette ? "silhouette" : "part labels");
+  for (const PartLabelMatches::Target& target : matches.targets()) {
+    if (target.is_silhouette != of_silhouette) continue;
     const Vector3d x = sums->points().Evaluate(kinematics, faces.row(target.face).data(), target.barycentric.data(),
                                                &sums->vertices(), derivatives);
     FrameAccumulator::Projected at;
     if (!sums->Project(x, &at)) {
-      sums->AddSaturated(term->kernel(), target.weight);
+      sums->AddSaturated(matches.kernel(), target.weight);
       continue;
     }
     const Matrix2d& whitening = target.WhiteningAt(at.pixel);
-    sums->AddImageRows<2>(at, whitening * (at.pixel - target.pixel), whitening, term->kernel(), target.weight);
+    sums->AddImageRows<2>(at, whitening * (at.pixel - target.pixel), whitening, matches.kernel(), target.weight);
   }
-  for (const PartLabelMatches::ContourPoint& point : term->contour()) {
+  for (const PartLabelMatches::ContourPoint& point : matches.contour()) {
+    if (point.is_silhouette != of_silhouette) continue;
     const Vector3d x = sums->points().Evaluate(kinematics, faces.row(point.face).data(), point.barycentric.data(),
                                                &sums->vertices(), derivatives);
     FrameAccumulator::Projected at;
     if (!sums->Project(x, &at)) {
-      sums->AddSaturated(term->kernel(), point.weight);
+      sums->AddSaturated(matches.kernel(), point.weight);
       continue;
     }
     Eigen::RowVector2d gradient;
     const double distance = point.field->Evaluate(at.pixel, &gradient) - point.offset_px;
-    if (silhouette != nullptr) (point.is_silhouette ? silhouette : parts)->px.push_back(std::abs(distance));
+    if (residuals != nullptr) residuals->px.push_back(std::abs(distance));
     const double inverse_sigma = point.InverseSigmaAt(distance);
     sums->AddImageRows<1>(at, Eigen::Matrix<double, 1, 1>(distance * inverse_sigma), gradient * inverse_sigma,
-                          term->kernel(), point.weight);
+                          matches.kernel(), point.weight);
   }
-  if (silhouette != nullptr) {
-    silhouette->unmatched += term->silhouette_unmatched();
-    parts->unmatched += term->part_unmatched();
+  if (residuals != nullptr) {
+    residuals->unmatched += of_silhouette ? matches.silhouette_unmatched() : matches.part_unmatched();
   }
 }
 

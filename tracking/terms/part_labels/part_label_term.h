@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Residuals of a part map (or a mask) of one frame: contours that should coincide, and pixels that should
-/// be covered. Everything is per *part* (PartLabelSequence says what that is); the silhouette is the contour of all
+/// Residuals of a part map (or a mask) of one frame: distances between the contours of body and detection, and pixels
+/// of a part that the body does not cover. All are by *part* (PartLabelSequence); the silhouette is the contour of all
 /// parts together.
 ///
-/// The detection gives, once: the signed distance field φ of the silhouette and of each part (distance_field.h),
+/// Computed once from the detection: the signed distance field φ of the silhouette and of each part (distance_field.h),
 /// samples of their boundaries, and some pixels inside each part. A round, at its starting state, rasterises the body
-/// and sets up:
+/// and finds:
 ///   contour → field     samples x of the body's own contour (it meets the background, or a part that is not nearer,
 ///                       in the visibility buffer): r = φ(π(x)) / σ, both ways: the contour has to lie on the boundary
 ///   boundary → contour  samples y of the detected boundary: the nearest sample x of the body's contour between the
 ///                       same two parts, r = W (π(x) − y), W = (n nᵀ + τ² t tᵀ)/σ with n = ∇φ(y): across the
-///                       boundary, and hardly (τ = 0.2) along it. So the body fills the mask
+///                       boundary, and weakly (τ = 0.2) along it, so that the body fills the mask
 ///   pixel → part        samples y inside part p where the body shows another part or nothing: the vertex of p that
 ///                       faces the camera and projects nearest, r = (π(x) − y)/(3σ)
-/// σ = sigma_share × the person's height in the image. The silhouette of a mask takes clothes_sigma_share for σ across
-/// the boundary wherever the body is inside (φ < 0, or n·(π(x) − y) < 0): clothes and hair reach beyond the body, the
-/// body never beyond them. Both costs and their derivatives are continuous where the body crosses. Correspondences (x
-/// and y) stay during a round, φ and π are evaluated at every state. Each of the two terms counts as kSilhouetteCount
-/// or kPartCount observations at most, however many samples it has: neighbouring pixels err together.
+/// σ = sigma_share × the person's height in the image. The silhouette of a mask uses clothes_sigma_share for σ across
+/// the boundary where the body is inside (φ < 0, or n·(π(x) − y) < 0): clothes and hair extend beyond the body, but the
+/// body never beyond them. Both costs and their derivatives are continuous at the boundary. Correspondences (x and y)
+/// are fixed during a round, φ and π are evaluated at every state. Each of the two terms counts as at most
+/// kSilhouetteCount or kPartCount observations, because the errors of neighbouring pixels are correlated.
 /// Unknown pixels and pixels beyond the image give no boundary. Pieces of the person or of a part below kSpeckShare of
 /// the largest are unknown (part_map.h); parts of fewer than kMinPartPixels pixels are left out.
 #pragma once
@@ -48,7 +48,7 @@ class PartLabelMatches {
     int face = 0;
     Eigen::Vector3d barycentric;
     Eigen::Vector2d pixel;
-    Eigen::Vector2d outward = Eigen::Vector2d::Zero();  ///< n; zero where no direction is across the boundary
+    Eigen::Vector2d outward = Eigen::Vector2d::Zero();  ///< n; zero where it is not defined
     Eigen::Matrix2d whitening;                          ///< of a point outside the boundary or on it
     Eigen::Matrix2d whitening_inside;                   ///< of a point inside
     double weight = 0;
@@ -57,7 +57,7 @@ class PartLabelMatches {
       return outward.dot(at - pixel) < 0 ? whitening_inside : whitening;
     }
   };
-  /// A surface point that should appear where the field is offset_px.
+  /// A surface point whose projection should have the distance offset_px in the field.
   struct ContourPoint {
     int face = 0;
     Eigen::Vector3d barycentric;
@@ -79,14 +79,15 @@ class PartLabelMatches {
 
   [[nodiscard]] const std::vector<Target>& targets() const { return targets_; }
   [[nodiscard]] const std::vector<ContourPoint>& contour() const { return contour_; }
-  [[nodiscard]] int num_rows() const { return static_cast<int>(2 * targets_.size() + contour_.size()); }
+  /// Number of rows of the silhouette, or of the parts.
+  [[nodiscard]] int num_rows(bool of_silhouette) const { return num_rows_[of_silhouette]; }
   [[nodiscard]] double kernel() const { return kernel_; }
-  /// Detected boundaries and pixels that found nothing on the body in this round.
+  /// Number of detected boundary samples and pixels without a correspondence on the body in this round.
   [[nodiscard]] int silhouette_unmatched() const { return silhouette_unmatched_; }
   [[nodiscard]] int part_unmatched() const { return part_unmatched_; }
-  /// Pixels that show the person.
+  /// Number of pixels that show the person.
   [[nodiscard]] int num_person_pixels() const { return num_person_pixels_; }
-  /// Of a part, or of the silhouette (0); null where there are too few pixels.
+  /// Field of a part, or of the silhouette (0); null if there are too few pixels.
   [[nodiscard]] const DistanceField* Field(uint8_t part) const;
 
  private:
@@ -137,17 +138,27 @@ class PartLabelMatches {
   std::vector<Target> targets_;
   std::vector<ContourPoint> contour_;
   double kernel_ = 4;
+  std::array<int, 2> num_rows_ = {0, 0};  ///< of the parts, of the silhouette
   int silhouette_unmatched_ = 0, part_unmatched_ = 0;
 };
 
-class PartLabelTerm : public CopyableTerm<PartLabelTerm> {
- public:
-  const PartLabelMatches* term = nullptr;  ///< borrowed; null: none
+/// Adds the residuals of the silhouette, or of the parts.
+void AddMatches(const PartLabelMatches& matches, bool of_silhouette, FrameAccumulator* sums);
 
-  [[nodiscard]] std::string name() const override { return "silhouette and parts"; }
-  [[nodiscard]] int num_rows() const override { return term == nullptr ? 0 : term->num_rows(); }
+template <bool kOfSilhouette>
+class OutlineTerm : public CopyableTerm<OutlineTerm<kOfSilhouette>> {
+ public:
+  const PartLabelMatches* matches = nullptr;  ///< borrowed; null: none
+
+  [[nodiscard]] std::string name() const override { return kOfSilhouette ? "silhouette" : "part labels"; }
+  [[nodiscard]] int num_rows() const override { return matches == nullptr ? 0 : matches->num_rows(kOfSilhouette); }
   [[nodiscard]] bool is_compressed() const override { return true; }
-  void Add(FrameAccumulator* sums) const override;
+  void Add(FrameAccumulator* sums) const override {
+    if (matches != nullptr) AddMatches(*matches, kOfSilhouette, sums);
+  }
 };
+
+using SilhouetteTerm = OutlineTerm<true>;
+using PartLabelTerm = OutlineTerm<false>;
 
 }  // namespace bodyloom

@@ -45,7 +45,10 @@ PartLabelRounds::PartLabelRounds(const ClipTermInput& clip)
 }
 
 void PartLabelRounds::Observe(SequenceProblem* problem) {
-  for (FrameData& frame : problem->frames) frame.Get<PartLabelTerm>();
+  for (FrameData& frame : problem->frames) {
+    frame.Get<SilhouetteTerm>();
+    frame.Get<PartLabelTerm>();
+  }
 }
 
 void PartLabelRounds::StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) {
@@ -57,7 +60,8 @@ void PartLabelRounds::StartRound(int round, const std::vector<int>& frames, Sequ
     const FrameState state = StateInCamera(*problem, i);
     const double height_px = UprightHeightPx(problem->layout, state, stature_m_);
     matches.Correspond(problem->layout, state, problem->betas, problem->log_focal, height_px, kernel, &surface);
-    problem->frames[i].Get<PartLabelTerm>().term = &matches;
+    problem->frames[i].Get<SilhouetteTerm>().matches = &matches;
+    problem->frames[i].Get<PartLabelTerm>().matches = &matches;
   });
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The silhouette and the part labels in a frame and over a clip: contours that should coincide and pixels that should
-/// be covered (part_label_term.h has the law), and the rounds in which they are matched.
+/// The terms of silhouette and part labels over a clip (residuals: part_label_term.h), and the rounds in which their
+/// correspondences are found.
 ///
-/// What corresponds to what is found at the start of a round and fixed during its solve; the kernel narrows from round
-/// to round (PartLabelOptions::start_kernel to kernel). Runs when the input has labels or masks; parts only for a body
-/// with charts.
+/// Correspondences are found at the start of a round and fixed during its solve; the kernel narrows from round to round
+/// (PartLabelOptions::start_kernel to kernel). Runs when the input has labels or masks; parts only for a body with
+/// charts.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
-/// Why a term does not run, or empty when it does.
+/// The reason why a term does not run; empty if it does.
 std::string WhyNoSilhouette(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::string WhyNoParts(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::vector<PlanEntry> PlanPartLabels(const TrackSequenceInput& input, const TrackSequenceOptions& options);

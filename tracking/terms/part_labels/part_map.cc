@@ -53,7 +53,7 @@ class Pieces {
     }
   }
 
-  /// The run that stands for the piece of run i.
+  /// The run that represents the piece of run i.
   size_t PieceOf(size_t i) {
     while (static_cast<size_t>(first_[i]) != i) {
       first_[i] = first_[static_cast<size_t>(first_[i])];

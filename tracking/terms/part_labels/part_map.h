@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The parts of one frame's label image, without specks: what PartLabelMatches reads.
+/// The parts of one frame's label image, without specks, as input of PartLabelMatches.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct PartMap {
   }
 };
 
-/// Neither background nor unknown.
+/// True if `part` is neither background nor unknown.
 inline bool IsPart(uint8_t part) {
   return part != PartLabelSequence::kBackground && part != PartLabelSequence::kUnknown;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The learned pose prior: which poses people take.
-///   ½ w E(x),   E(x) = min_k [ ‖L_k (x − μ_k)‖² + e_k ]      (pose_prior.h)
-/// x: axis-angle of the prior's joints that are estimated, radians. No robust kernel: the minimum over the components
-/// is what keeps rare poses possible. Derivatives are those of the nearest component. Runs when a prior was given.
+/// The learned prior on the distribution of poses.
+///   ½ w E(x),   E(x) = min_k [ ‖L_k (x − μ_k)‖² + e_k ]      (MixturePrior)
+/// x: axis-angle of the prior's joints that are estimated, radians. No robust kernel, since the minimum over the
+/// components already admits rare poses. Derivatives are those of the nearest component. Runs when a prior was given.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@
 
 namespace bodyloom {
 
-// The pose prior as the solver uses it: the learned mixture restricted to the joints that are estimated.
+// The learned mixture, restricted to the joints that are estimated.
 //
 // Energy of x (stacked axis-angle of the joints): min_k [ ‖L_k (x − μ_k)‖² + e_k ], e_k = −2 log(w_k |L_k|) shifted so
 // that the smallest is zero. The minimum over components replaces the logarithm of the sum, as in SMPLify, so that the
@@ -30,7 +30,7 @@ class MixturePrior {
   [[nodiscard]] bool empty() const { return joints_.empty(); }
   /// Body joint indices in the order of x.
   [[nodiscard]] const std::vector<int>& joints() const { return joints_; }
-  /// Index of the component with the least energy at x, and that energy.
+  /// Index of the component of minimum energy at x, and that energy.
   int Nearest(const Eigen::VectorXd& x, double* energy) const;
   [[nodiscard]] const Eigen::MatrixXd& sqrt_precision(int k) const { return components_[k].L; }
   /// Σ⁻¹
@@ -62,7 +62,7 @@ class PosePriorTerm : public CopyableTerm<PosePriorTerm> {
   double weight = 0;                            ///< w
 
   [[nodiscard]] std::string name() const override { return "pose prior"; }
-  /// One by one; sums take none.
+  /// Rows for residuals one by one; sums use none.
   [[nodiscard]] int num_rows() const override {
     return runs() ? static_cast<int>(3 * mixture->joints().size()) + 1 : 0;
   }

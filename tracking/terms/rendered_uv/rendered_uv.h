@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// L_r of paper A in a frame and over a clip: dense keypoints whose residual is taken in UV (rendered_uv_term.h has the
-/// law), and the rounds in which their covariance is found.
+/// L_r of paper A over a clip: dense keypoints with residuals in UV (formula: rendered_uv_term.h), and the rounds in
+/// which their covariance is computed.
 ///
-/// Which covariance an error has is found at the start of a round and fixed during its solve; the visible faces are
-/// looked up at every state. Runs when the keypoints say that their noise lies on the surface (or when
-/// RenderedUvOptions lets it run without), and the body has charts. Keypoints that it takes leave the dense term.
+/// The covariance of an error is computed at the start of a round and fixed during its solve; the visible faces are
+/// found at every state. Runs when the keypoints' noise is known to be on the surface (or when RenderedUvOptions does
+/// not require that), and the body has charts. Keypoints that it uses are excluded from the dense term.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ struct PlanEntry;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
-/// Why the term does not run, or empty when it does.
+/// The reason why the term does not run; empty if it does.
 std::string WhyNoRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::vector<PlanEntry> PlanRenderedUv(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::unique_ptr<ClipTerm> MakeDenseRounds(const ClipTermInput& clip);
@@ -38,7 +38,7 @@ class DenseRounds : public ClipTerm {
   const TrackSequenceInput& input_;
   int num_threads_;
   Rounds rounds_;
-  std::shared_ptr<const Skinner> skinner_;                      ///< null when nothing looks at the surface
+  std::shared_ptr<const Skinner> skinner_;                      ///< null if the surface is not needed
   std::vector<std::unique_ptr<RenderedUvPixels>> rendered_uv_;  ///< T, or empty
 };
 

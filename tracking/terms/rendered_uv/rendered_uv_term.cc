@@ -26,7 +26,7 @@ std::vector<int> StratifiedKeypoints(const BodyModel& model, const std::vector<D
   for (size_t i = 0; i < keypoints.size(); ++i) {
     by_part[model.data().face_part[keypoints[i].face]].push_back(static_cast<int>(i));
   }
-  std::vector<int> order;  // parts by rising size: what a small part leaves over goes to the others
+  std::vector<int> order;  // parts by increasing size: the unused share of a small part goes to the others
   for (int p = 0; p < 256; ++p) {
     if (!by_part[p].empty()) order.push_back(p);
   }

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-/// L_r of paper A for one frame: what chart coordinates the fitted body shows at a detected pixel, against the
-/// detected ones.
+/// L_r of paper A for one frame: difference between the chart coordinates of the fitted body at a detected pixel and
+/// the detected ones.
 ///
-///   r = W M₀ (uv(p; θ) − uv_detected(p))        when the pixel p sees the chart that the detector named
-/// uv(p; θ) is where the ray through p meets the face that the visibility buffer found at the nearest whole pixel, in
-/// double. W and M₀ = ∂pixel/∂(u, v) are those of the label at the round's start (terms/dense/dense_whitening.h): W M₀
-/// turns chart units, which differ in size from chart to chart, into standard deviations; where the label is right it
-/// is the inverse root of s_uv² I + s_px² M₀⁻¹ M₀⁻ᵀ, the covariance of the UV error.
+///   r = W M₀ (uv(p; θ) − uv_detected(p))        when the pixel p shows the chart that the detector predicts
+/// uv(p; θ) is at the intersection, in double, of the ray through p with the face that the visibility buffer found at
+/// the nearest whole pixel. W and M₀ = ∂pixel/∂(u, v) are those of the label at the round's start
+/// (terms/dense/dense_whitening.h): W M₀ converts chart units, which differ in size from chart to chart, to standard
+/// deviations; for a correct label it is the inverse root of s_uv² I + s_px² M₀⁻¹ M₀⁻ᵀ, the covariance of the UV error.
 /// Derivative with the visible face held: ∂uv/∂θ = −G (I − d nᵀ/(n·d)) ∂x/∂θ, x the surface point at p, d the ray, n
 /// the normal, G the gradient of (u, v) on the face; since G (I − d nᵀ/(n·d)) = M⁻¹ ∂pixel/∂x, the rows are −W M₀ M⁻¹
 /// ∂π(x)/∂θ for every camera model and parameter, M that of the visible face at this state.
 ///
-/// A pixel is unmatched when it sees the background, another chart, or a face with |cos(n, d)| below min_cosine. It
-/// costs the reprojection error of its label, W (π(x_label) − p), so that it still pulls and the cost hardly jumps
-/// where a pixel changes sides (to first order both residuals are the same up to sign); or, with unmatched_reproject
-/// off, the kernel's saturation with a zero derivative.
+/// A pixel is unmatched when it shows the background, another chart, or a face with |cos(n, d)| below min_cosine. It
+/// costs the reprojection error of its label, W (π(x_label) − p), which still has a gradient, and the cost is nearly
+/// continuous when a pixel becomes unmatched (to first order both residuals are the same up to sign); or, with
+/// unmatched_reproject off, the kernel's saturation with a zero derivative.
 ///
-/// The frame is rasterised once for each new state, whatever the number of pixels and calls.
+/// The frame is rasterised once for each new state, for any number of pixels and calls.
 /// Source: Yoon et al., "Learning motion-dependent appearance", appendix A; fixed-visibility derivative after DenseRaC.
 #pragma once
 
@@ -41,31 +41,31 @@ class RenderedUvPixels {
  public:
   struct Pixel {
     int keypoint = 0;  ///< index into the frame's dense keypoints
-    int part = 0;      ///< chart that the detector named
+    int part = 0;      ///< chart that the detector predicts
     Eigen::Vector2d pixel, uv;
     Eigen::Matrix2d residual_by_uv = Eigen::Matrix2d::Zero();  ///< W M₀
     Eigen::Matrix2d pixel_by_uv = Eigen::Matrix2d::Zero();     ///< M₀
     Eigen::Matrix2d whitening = Eigen::Matrix2d::Zero();       ///< W
   };
 
-  /// Takes up to options.max_points of the frame's keypoints, which are borrowed. The body must have charts with
+  /// Uses up to options.max_points of the frame's keypoints, which are borrowed. The body must have charts with
   /// coordinates.
   RenderedUvPixels(const BodyModel& model, std::shared_ptr<const Skinner> skinner,
                    const std::vector<DenseKeypoint>& keypoints, const RenderedUvOptions& options);
 
-  /// To be called before the first evaluation and between rounds. Keypoints without M₀ are left to reprojection.
+  /// To be called before the first evaluation and between rounds. Keypoints without M₀ stay in the dense term.
   void SetWhitening(const std::vector<DenseWhitening>& whitening);
 
-  /// The face that each of pixels() sees (−1: none), at this state. `translation` and `camera` are those of the state.
+  /// The face visible at each of pixels() (−1: none), at this state. `translation` and `camera` are those of the state.
   const std::vector<int>& VisibleFaces(const BodyModel& model, const FrameState& state, const Eigen::VectorXd& betas,
                                        const Eigen::Vector3d& translation, const Camera& camera,
                                        VisibleSurface* surface);
 
-  /// While true the visible faces stay as they are, whatever the state: for checking derivatives.
+  /// While true the visible faces are fixed at any state, for checking derivatives.
   void HoldVisibility(bool hold) { hold_ = hold; }
 
   [[nodiscard]] const std::vector<Pixel>& pixels() const { return pixels_; }
-  /// By keypoint: not 0 when it is taken in UV.
+  /// By keypoint: not 0 if its residual is in UV.
   [[nodiscard]] const std::vector<char>& taken() const { return taken_; }
   [[nodiscard]] const std::vector<DenseKeypoint>& keypoints() const { return keypoints_; }
   [[nodiscard]] double weight() const { return options_.weight; }
@@ -102,8 +102,8 @@ class RenderedUvTerm : public CopyableTerm<RenderedUvTerm> {
   void Add(FrameAccumulator* sums) const override;
 };
 
-/// Up to max_points indices into `keypoints`, ascending: every part gets an equal share as far as it has that many, and
-/// within a part they are spread evenly over the order in which they come. All of them when they are few.
+/// Selects up to max_points indices into `keypoints`, ascending: every part has an equal share, if it has that many,
+/// and within a part they are evenly spaced in the order of the keypoints. All of them if there are no more.
 std::vector<int> StratifiedKeypoints(const BodyModel& model, const std::vector<DenseKeypoint>& keypoints,
                                      int max_points);
 

@@ -31,7 +31,7 @@ SynthClipOptions Small(uint64_t seed = 1) {
 
 Motion ShortMotion(int frames = 24) { return DemoMotion(ToyBody(), frames, 10); }
 
-/// Where a dense keypoint's surface point is seen.
+/// Projection of a dense keypoint's surface point.
 Vector2d Projected(const SynthClip& clip, int t, const DenseKeypoint& point) {
   const BodyPose pose = PoseFromAxisAngle(ToyBody(), clip.truth.motion.poses.row(t).transpose(),
                                           clip.truth.motion.trans.row(t).transpose());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens to the motion before a camera sees it.
+// Augmentation of the motion before projection.
 #include <gtest/gtest.h>
 
 #include <algorithm>

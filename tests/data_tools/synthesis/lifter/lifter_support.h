@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Motions and options that the tests of the lifter's training windows share.
+/// Motions and options shared by the tests of the lifter's training windows.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace bodyloom {
 
 inline Motion ShortDemoMotion() { return DemoMotion(ToyBody(), 360, 60); }
 
-/// Nothing random but the clip, its start, the person and the camera: exact detections of the recorded motion.
+/// Only clip, start, person and camera are random: exact detections of the recorded motion.
 inline LifterWindowOptions PlainOptions() {
   LifterWindowOptions o;
   o.moving_camera = o.mirror = o.arm_exchange = o.leg_exchange = o.spine_exchange = 0;

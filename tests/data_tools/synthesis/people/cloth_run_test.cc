@@ -67,16 +67,16 @@ int HemTurns(const DressedPerson& person, const std::vector<Vector3d>& cloth) {
 
 TEST(ClothRun, LightStuffFallsIntoMoreFoldsThanHeavyStuff) {
   int turns[2];
-  for (const ClothStuff stuff : {ClothStuff::kSilk, ClothStuff::kDenim}) {
+  for (const ClothMaterial material : {ClothMaterial::kSilk, ClothMaterial::kDenim}) {
     const DressedPerson person(BuiltinBody(), Eigen::VectorXd::Zero(10), GarmentKind::kSkirt, 1,
-                               ClothesStyle::kPatterned, stuff);
+                               ClothesStyle::kPatterned, material);
     ClothRunOptions options;
-    options.cloth = MovedAs(stuff, options.cloth);
+    options.cloth = ClothOptionsFor(material, options.cloth);
     ClothRun run(person, Turning(30, 30, [](double t) { return 2.0 * std::sin(4 * t); }), options);
     std::vector<Vector3d> cloth;
     for (int t = 0; t < 30; ++t) cloth = run.Next();
     for (const Vector3d& p : cloth) ASSERT_TRUE(p.allFinite());
-    turns[stuff == ClothStuff::kDenim] = HemTurns(person, cloth);
+    turns[material == ClothMaterial::kDenim] = HemTurns(person, cloth);
   }
   EXPECT_GE(turns[0], turns[1] + 4) << turns[1];
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A motion to watch cloth by.
+/// A turning motion for tests of cloth.
 #pragma once
 
 #include "geometry/scene/track.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "render/gaussian_avatar/learning/loose_gaussians.h"
-#include "tests/render/gaussian_avatar/learning/lesson.h"
+#include "tests/render/gaussian_avatar/learning/training_example.h"
 #include "tests/render/splat/same_bytes.h"
 
 namespace bodyloom::avatar_trainer_test {
@@ -45,26 +45,26 @@ TEST(LearningRates, SettleAsTheirLawSays) {
 }
 
 TEST(AvatarTrainer, LearnsAPersonsColours) {
-  const Lesson& lesson = TheLesson();
-  AvatarTrainer trainer(lesson.model.data().faces, lesson.views, Short(120));
-  AvatarTrainingState state = lesson.Start();
+  const TrainingExample& example = Example();
+  AvatarTrainer trainer(example.model.data().faces, example.views, Short(120));
+  AvatarTrainingState state = example.Start();
   std::vector<double> losses;
   while (!trainer.IsDone(state)) losses.push_back(trainer.Step(&state).loss);
   ASSERT_EQ(losses.size(), 120U);
   EXPECT_LT(MeanLoss(losses, 100, 20), 0.55 * MeanLoss(losses, 0, 20));
   std::string why;
-  EXPECT_TRUE(state.body.IsValid(lesson.model.num_joints(), lesson.model.num_faces(), &why)) << why;
-  EXPECT_EQ(state.body.size(), lesson.Start().body.size());
+  EXPECT_TRUE(state.body.IsValid(example.model.num_joints(), example.model.num_faces(), &why)) << why;
+  EXPECT_EQ(state.body.size(), example.Start().body.size());
 }
 
 TEST(AvatarTrainer, SameBytesForAnyThreadsAndInstructionSet) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   ExpectSameBytesEverywhere([&](int threads, FloatColumns* table) {
     AvatarTrainerOptions options = Short(12);
     options.num_threads = threads;
     options.dead_opacity = 0.88F;  // half of them move
-    AvatarTrainer trainer(lesson.model.data().faces, lesson.views, options);
-    AvatarTrainingState state = lesson.Start();
+    AvatarTrainer trainer(example.model.data().faces, example.views, options);
+    AvatarTrainingState state = example.Start();
     int relocated = 0;
     while (!trainer.IsDone(state)) relocated += trainer.Step(&state).relocated;
     EXPECT_GT(relocated, 0);
@@ -74,12 +74,12 @@ TEST(AvatarTrainer, SameBytesForAnyThreadsAndInstructionSet) {
 }
 
 TEST(AvatarTrainer, AKeptStateGoesOnAsIfNeverLeft) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   const auto run = [&](int64_t until, AvatarTrainingState* state) {
-    AvatarTrainer trainer(lesson.model.data().faces, lesson.views, Short(30));
+    AvatarTrainer trainer(example.model.data().faces, example.views, Short(30));
     while (state->step < until) trainer.Step(state);
   };
-  AvatarTrainingState whole = lesson.Start(), parts = lesson.Start();
+  AvatarTrainingState whole = example.Start(), parts = example.Start();
   run(30, &whole);
   run(13, &parts);
   const AvatarTrainingState kept = parts;
@@ -91,13 +91,13 @@ TEST(AvatarTrainer, AKeptStateGoesOnAsIfNeverLeft) {
 }
 
 TEST(AvatarTrainer, AnotherSeedIsAnotherTraining) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   FloatColumns results[2];
   for (const int seed : {0, 1}) {
     AvatarTrainerOptions options = Short(5);
     options.seed = seed;
-    AvatarTrainer trainer(lesson.model.data().faces, lesson.views, options);
-    AvatarTrainingState state = lesson.Start();
+    AvatarTrainer trainer(example.model.data().faces, example.views, options);
+    AvatarTrainingState state = example.Start();
     while (!trainer.IsDone(state)) trainer.Step(&state);
     results[seed] = state.body.parameters;
   }
@@ -105,20 +105,20 @@ TEST(AvatarTrainer, AnotherSeedIsAnotherTraining) {
 }
 
 TEST(AvatarTrainer, EveryViewComesOnceARound) {
-  const Lesson& lesson = TheLesson();
-  AvatarTrainer trainer(lesson.model.data().faces, lesson.views, Short(100));
-  AvatarTrainingState state = lesson.Start();
+  const TrainingExample& example = Example();
+  AvatarTrainer trainer(example.model.data().faces, example.views, Short(100));
+  AvatarTrainingState state = example.Start();
   for (int round = 0; round < 3; ++round) {
-    std::vector<int> seen(lesson.views.size());
-    for (size_t k = 0; k < lesson.views.size(); ++k) ++seen[trainer.Step(&state).view];
-    EXPECT_EQ(seen, std::vector<int>(lesson.views.size(), 1));
+    std::vector<int> seen(example.views.size());
+    for (size_t k = 0; k < example.views.size(); ++k) ++seen[trainer.Step(&state).view];
+    EXPECT_EQ(seen, std::vector<int>(example.views.size(), 1));
   }
 }
 
 TEST(AvatarTrainer, LightIsLearned) {
-  const Lesson& lesson = TheLesson();
-  AvatarTrainer trainer(lesson.model.data().faces, lesson.views, Short(3));
-  AvatarTrainingState state = lesson.Start();
+  const TrainingExample& example = Example();
+  AvatarTrainer trainer(example.model.data().faces, example.views, Short(3));
+  AvatarTrainingState state = example.Start();
   const auto before = state.body.light;
   trainer.Step(&state);
   for (int k = 0; k < GaussianBody::kLightValues; ++k) {
@@ -127,13 +127,13 @@ TEST(AvatarTrainer, LightIsLearned) {
 }
 
 TEST(AvatarTrainer, WhatIsHiddenLearnsNothing) {
-  const Lesson& lesson = TheLesson();
-  const auto count = [&](double least_seen, int* skin_kept, int* loose_fading) {
+  const TrainingExample& example = Example();
+  const auto count = [&](double min_seen, int* skin_kept, int* loose_fading) {
     AvatarTrainerOptions options = Short(30);
-    options.relocate_every = 0, options.least_seen = least_seen;
+    options.relocate_every = 0, options.min_seen = min_seen;
     // One frame, and so one side.
-    AvatarTrainer trainer(lesson.model.data().faces, std::span(lesson.views).first(1), options);
-    AvatarTrainingState state = lesson.Start();
+    AvatarTrainer trainer(example.model.data().faces, std::span(example.views).first(1), options);
+    AvatarTrainingState state = example.Start();
     for (int i = 0; i < state.body.size(); ++i) {
       state.body.kinds[i] = i % 2 == 0 ? GaussianKind::kSkin : GaussianKind::kLoose;
       state.body.parameters(i, GaussianBody::kOpacityLogit) = 5;
@@ -163,11 +163,11 @@ TEST(AvatarTrainer, WhatIsHiddenLearnsNothing) {
 }
 
 TEST(AvatarTrainer, TimeEndsItToo) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   AvatarTrainerOptions options = Short(1000000);
   options.seconds = 10;
-  const AvatarTrainer trainer(lesson.model.data().faces, lesson.views, options);
-  AvatarTrainingState state = lesson.Start();
+  const AvatarTrainer trainer(example.model.data().faces, example.views, options);
+  AvatarTrainingState state = example.Start();
   state.seconds = 5;
   EXPECT_DOUBLE_EQ(trainer.Progress(state), 0.5);
   state.seconds = 11;
@@ -175,14 +175,14 @@ TEST(AvatarTrainer, TimeEndsItToo) {
 }
 
 TEST(AvatarTrainer, RefusesClipsWithoutAPersonAndOptionsOutOfRange) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   const std::vector<TrainingView> nobody(3);
-  EXPECT_THROW(AvatarTrainer(lesson.model.data().faces, nobody, {}), std::invalid_argument);
+  EXPECT_THROW(AvatarTrainer(example.model.data().faces, nobody, {}), std::invalid_argument);
   AvatarTrainerOptions options;
   options.steps = 0;
-  EXPECT_THROW(AvatarTrainer(lesson.model.data().faces, lesson.views, options), std::invalid_argument);
+  EXPECT_THROW(AvatarTrainer(example.model.data().faces, example.views, options), std::invalid_argument);
   options.steps = 1, options.rates.albedo = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(AvatarTrainer(lesson.model.data().faces, lesson.views, options), std::invalid_argument);
+  EXPECT_THROW(AvatarTrainer(example.model.data().faces, example.views, options), std::invalid_argument);
 }
 
 TEST(LearningRates, PlacesBecomeFiner) {
@@ -194,7 +194,7 @@ TEST(LearningRates, PlacesBecomeFiner) {
 }
 
 TEST(RelocateGaussians, DeadOnesBecomeCopiesOfWhatPulls) {
-  GaussianBody body = TheLesson().Start().body;
+  GaussianBody body = Example().Start().body;
   const GaussianBody before = body;
   std::vector<float> pull(body.size(), 0.0F);
   pull[20] = 3, pull[21] = std::numeric_limits<float>::quiet_NaN(), pull[22] = -1;
@@ -223,18 +223,18 @@ TEST(RelocateGaussians, DeadOnesBecomeCopiesOfWhatPulls) {
 }
 
 TEST(SmoothSkinWeights, AreTheBodysOnTheSkinAndSmoothOffIt) {
-  const Lesson& lesson = TheLesson();
-  const SmoothSkinWeights skin(lesson.model, lesson.betas, 0.3F, 2);
+  const TrainingExample& example = Example();
+  const SmoothSkinWeights skin(example.model, example.betas, 0.3F, 2);
   std::vector<float> weights(skin.num_joints());
   int compared = 0;
-  for (int v = 0; v < lesson.model.num_vertices(); v += 40) {
+  for (int v = 0; v < example.model.num_vertices(); v += 40) {
     const Eigen::Vector3f place = skin.vertices().row(v).transpose();
     EXPECT_LT(skin.DistanceTo(place), 0.04) << v;
     skin.WeightsAt(place, weights.data());
     double sum = 0, overlap = 0;
     for (const float w : weights) sum += w;
-    for (int k = lesson.model.influence_begin()[v]; k < lesson.model.influence_begin()[v + 1]; ++k) {
-      overlap += std::min<double>(weights[lesson.model.influence_joint()[k]], lesson.model.influence_weight()[k]);
+    for (int k = example.model.influence_begin()[v]; k < example.model.influence_begin()[v + 1]; ++k) {
+      overlap += std::min<double>(weights[example.model.influence_joint()[k]], example.model.influence_weight()[k]);
     }
     EXPECT_NEAR(sum, 1, 1e-5);
     EXPECT_GT(overlap, 0.4) << v;
@@ -243,19 +243,19 @@ TEST(SmoothSkinWeights, AreTheBodysOnTheSkinAndSmoothOffIt) {
   }
   EXPECT_GT(compared, 15);
   EXPECT_GT(skin.DistanceTo(Eigen::Vector3f(0, 50, 0)), 0.3);
-  EXPECT_THROW(SmoothSkinWeights(lesson.model, lesson.betas, 0, 1), std::invalid_argument);
+  EXPECT_THROW(SmoothSkinWeights(example.model, example.betas, 0, 1), std::invalid_argument);
 }
 
 TEST(LooseGaussians, LieInTheShellOfTheHull) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   LooseGaussiansOptions options;
   options.spacing_m = 0.03F, options.reach_m = 0.2F, options.count = 500;
-  const GaussianBody loose = LooseGaussians(lesson.model, lesson.betas, lesson.views, options);
+  const GaussianBody loose = LooseGaussians(example.model, example.betas, example.views, options);
   ASSERT_GT(loose.size(), 20);
   ASSERT_LE(loose.size(), 500);
   std::string why;
-  EXPECT_TRUE(loose.IsValid(lesson.model.num_joints(), lesson.model.num_faces(), &why)) << why;
-  const SmoothSkinWeights skin(lesson.model, lesson.betas, 0.2F, 1);
+  EXPECT_TRUE(loose.IsValid(example.model.num_joints(), example.model.num_faces(), &why)) << why;
+  const SmoothSkinWeights skin(example.model, example.betas, 0.2F, 1);
   for (int i = 0; i < loose.size(); ++i) {
     const Eigen::Vector3f place(loose.parameters(i, 0), loose.parameters(i, 1), loose.parameters(i, 2));
     EXPECT_LE(skin.DistanceTo(place), 0.2F);
@@ -266,19 +266,19 @@ TEST(LooseGaussians, LieInTheShellOfTheHull) {
   }
   options.num_threads = 3;
   EXPECT_TRUE(
-      SameBytes(loose.parameters, LooseGaussians(lesson.model, lesson.betas, lesson.views, options).parameters));
+      SameBytes(loose.parameters, LooseGaussians(example.model, example.betas, example.views, options).parameters));
   options.seed = 2, options.count = 15;
-  EXPECT_EQ(LooseGaussians(lesson.model, lesson.betas, lesson.views, options).size(), 15);
-  // Where nobody is seen nothing is.
-  std::vector<TrainingView> nobody = lesson.views;
+  EXPECT_EQ(LooseGaussians(example.model, example.betas, example.views, options).size(), 15);
+  // Without a visible person nothing is trained.
+  std::vector<TrainingView> nobody = example.views;
   for (TrainingView& view : nobody) std::fill(view.pixels.begin(), view.pixels.end(), uint8_t{0});
-  EXPECT_EQ(LooseGaussians(lesson.model, lesson.betas, nobody, options).size(), 0);
+  EXPECT_EQ(LooseGaussians(example.model, example.betas, nobody, options).size(), 0);
   options.spacing_m = 0;
-  EXPECT_THROW(LooseGaussians(lesson.model, lesson.betas, nobody, options), std::invalid_argument);
+  EXPECT_THROW(LooseGaussians(example.model, example.betas, nobody, options), std::invalid_argument);
 }
 
 TEST(LooseGaussians, AppendedRowsFollowTheOthers) {
-  const GaussianBody skin = TheLesson().Start().body;
+  const GaussianBody skin = Example().Start().body;
   GaussianBody both = skin;
   AppendGaussians(skin, &both);
   ASSERT_EQ(both.size(), 2 * skin.size());
@@ -290,9 +290,9 @@ TEST(LooseGaussians, AppendedRowsFollowTheOthers) {
 }
 
 TEST(TrainingView, CutsThePersonAndRemembersWhoIsWhere) {
-  Image picture(30, 20, {10, 20, 30});
+  Image image(30, 20, {10, 20, 30});
   const auto is_person = [](int x, int y) { return x >= 10 && x < 14 && y >= 5 && y < 9; };
-  const TrainingView view = CutTrainingView(picture, is_person, {0, 0, 12, 20}, {8, 2, 11, 4}, 2);
+  const TrainingView view = CutTrainingView(image, is_person, {0, 0, 12, 20}, {8, 2, 11, 4}, 2);
   EXPECT_EQ(view.person_pixels, 8) << "beyond the search nobody counts";
   EXPECT_EQ(view.window.x_begin, 6);
   EXPECT_EQ(view.window.y_begin, 0);
@@ -302,7 +302,7 @@ TEST(TrainingView, CutsThePersonAndRemembersWhoIsWhere) {
   EXPECT_FALSE(view.ShowsPerson(12, 5));
   EXPECT_FALSE(view.ShowsPerson(9, 5));
   EXPECT_FALSE(view.ShowsPerson(29, 19));
-  PictureTruth truth;
+  ImageTruth truth;
   FillTruth(view, &truth);
   const int i = static_cast<int>(view.window.IndexOf(10, 5));
   EXPECT_FLOAT_EQ(truth.planes(i, 0), 10.0F / 255);
@@ -310,7 +310,7 @@ TEST(TrainingView, CutsThePersonAndRemembersWhoIsWhere) {
   EXPECT_EQ(truth.planes(i, 3), 1);
   EXPECT_EQ(truth.planes(i - 1, 0), 0);
   EXPECT_TRUE(CutTrainingView(
-                  picture, [](int, int) { return false; }, {0, 0, 30, 20}, {}, 2)
+                  image, [](int, int) { return false; }, {0, 0, 30, 20}, {}, 2)
                   .window.empty());
 }
 

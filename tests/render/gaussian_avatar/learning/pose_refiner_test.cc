@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "tests/render/gaussian_avatar/learning/lesson.h"
+#include "tests/render/gaussian_avatar/learning/training_example.h"
 #include "tests/render/gaussian_avatar/person_scene.h"
 #include "tests/render/splat/same_bytes.h"
 
@@ -96,13 +96,13 @@ TEST(PoseRefiner, CorrectivesLeftOutOfTheDerivativeAreASmallPartOfIt) {
   EXPECT_LT(std::sqrt(left_out / all), 0.05);
 }
 
-/// The lesson's poses off by up to `degrees` a joint and some centimetres, with the truth's Gaussians.
+/// The example's poses off by up to `degrees` a joint and some centimetres, with the truth's Gaussians.
 struct OffPoses {
   std::vector<TrackedPose> poses;
   explicit OffPoses(double degrees) {
     std::mt19937 generator(2);
     const auto uniform = [&] { return generator() / 2147483648.0 - 1; };
-    for (const BodyPose& truth : TheLesson().poses) {
+    for (const BodyPose& truth : Example().poses) {
       TrackedPose tracked;
       tracked.pose = truth;
       for (Eigen::Matrix3d& rotation : tracked.pose.rotations) {
@@ -114,12 +114,12 @@ struct OffPoses {
   }
   /// Mean distance of the joints from the truth across the view, millimetres: along it one picture says little.
   [[nodiscard]] double AcrossMm(const PoseRefiner& refiner, const PoseCorrections& corrections) const {
-    const Lesson& lesson = TheLesson();
-    const MatrixX3d rest = lesson.model.RestJoints(lesson.betas);
+    const TrainingExample& example = Example();
+    const MatrixX3d rest = example.model.RestJoints(example.betas);
     double sum = 0;
     for (int t = 0; t < refiner.num_frames(); ++t) {
-      const MatrixX3d truth = PoseSkeleton(lesson.model, rest, lesson.poses[t]).joints;
-      const MatrixX3d ours = PoseSkeleton(lesson.model, rest, refiner.PoseAt(t, corrections)).joints;
+      const MatrixX3d truth = PoseSkeleton(example.model, rest, example.poses[t]).joints;
+      const MatrixX3d ours = PoseSkeleton(example.model, rest, refiner.PoseAt(t, corrections)).joints;
       sum += 1e3 * (truth - ours).leftCols<2>().rowwise().norm().mean();
     }
     return sum / refiner.num_frames();
@@ -141,19 +141,19 @@ PoseRefinerOptions Unconnected() {
 }
 
 AvatarTrainingState TrueState(const PoseRefiner& refiner) {
-  AvatarTrainingState state = AvatarTrainingState::Of(TheLesson().truth);
+  AvatarTrainingState state = AvatarTrainingState::Of(Example().truth);
   state.poses.Reset(refiner.num_frames(), refiner.num_joints());
   return state;
 }
 
 TEST(PoseRefiner, BringsAPerturbedPoseBack) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   const OffPoses off(4);
-  const PoseRefiner refiner(lesson.model, lesson.betas, off.poses, Unconnected());
+  const PoseRefiner refiner(example.model, example.betas, off.poses, Unconnected());
   AvatarTrainingState state = TrueState(refiner);
   const double before = off.AcrossMm(refiner, state.poses);
   EXPECT_GT(before, 15);
-  AvatarTrainer trainer(lesson.model.data().faces, lesson.views, PosesAlone(4 * 40), &refiner);
+  AvatarTrainer trainer(example.model.data().faces, example.views, PosesAlone(4 * 40), &refiner);
   const FloatColumns person = state.body.parameters;
   while (!trainer.IsDone(state)) trainer.Step(&state);
   EXPECT_LT(off.AcrossMm(refiner, state.poses), 0.25 * before) << before << " mm before";
@@ -161,11 +161,11 @@ TEST(PoseRefiner, BringsAPerturbedPoseBack) {
 }
 
 TEST(PoseRefiner, TheTrueTrackStaysWhereItIs) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   const OffPoses none(0);
-  const PoseRefiner refiner(lesson.model, lesson.betas, none.poses, Unconnected());
+  const PoseRefiner refiner(example.model, example.betas, none.poses, Unconnected());
   AvatarTrainingState state = TrueState(refiner);
-  AvatarTrainer trainer(lesson.model.data().faces, lesson.views, PosesAlone(4 * 40), &refiner);
+  AvatarTrainer trainer(example.model.data().faces, example.views, PosesAlone(4 * 40), &refiner);
   while (!trainer.IsDone(state)) trainer.Step(&state);
   EXPECT_LT(none.AcrossMm(refiner, state.poses), 3);
 }
@@ -179,9 +179,9 @@ std::vector<uint64_t> BitsOf(const Matrix& matrix) {
 }
 
 TEST(PoseRefiner, ThePriorAloneLeavesTheTrack) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   const OffPoses off(5);
-  const PoseRefiner refiner(lesson.model, lesson.betas, off.poses, {});
+  const PoseRefiner refiner(example.model, example.betas, off.poses, {});
   PoseCorrections corrections;
   corrections.Reset(4, refiner.num_joints());
   const std::vector<float> nothing(12 * static_cast<size_t>(refiner.num_joints()), 0.0F);
@@ -198,8 +198,8 @@ TEST(PoseRefiner, ThePriorAloneLeavesTheTrack) {
 }
 
 TEST(PoseRefiner, ThePriorPullsBackToTheTrackAndToTheFramesBeside) {
-  const Lesson& lesson = TheLesson();
-  const PoseRefiner refiner(lesson.model, lesson.betas, OffPoses(0).poses, {});
+  const TrainingExample& example = Example();
+  const PoseRefiner refiner(example.model, example.betas, OffPoses(0).poses, {});
   const std::vector<float> nothing(12 * static_cast<size_t>(refiner.num_joints()), 0.0F);
   PoseCorrections corrections;
   corrections.Reset(4, refiner.num_joints());
@@ -215,26 +215,26 @@ TEST(PoseRefiner, ThePriorPullsBackToTheTrackAndToTheFramesBeside) {
 }
 
 TEST(PoseRefiner, SameBytesForAnyThreadsAndAfterAStop) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   const OffPoses off(3);
-  const PoseRefiner refiner(lesson.model, lesson.betas, off.poses, {});
+  const PoseRefiner refiner(example.model, example.betas, off.poses, {});
   AvatarTrainerOptions options;
   options.steps = 24, options.relocate_every = 10, options.refine_from = 0.2;
   const auto start = [&] {
-    AvatarTrainingState state = AvatarTrainingState::Of(SkinGaussians(lesson.model, lesson.betas, lesson.texels));
+    AvatarTrainingState state = AvatarTrainingState::Of(SkinGaussians(example.model, example.betas, example.texels));
     state.poses.Reset(refiner.num_frames(), refiner.num_joints());
     return state;
   };
   ExpectSameBytesEverywhere([&](int threads, FloatColumns* table) {
     options.num_threads = threads;
-    AvatarTrainer trainer(lesson.model.data().faces, lesson.views, options, &refiner);
+    AvatarTrainer trainer(example.model.data().faces, example.views, options, &refiner);
     AvatarTrainingState state = start();
     while (!trainer.IsDone(state)) trainer.Step(&state);
     *table = state.poses.values;
   });
   AvatarTrainingState whole = start(), parts = start();
   const auto run = [&](int64_t until, AvatarTrainingState* state) {
-    AvatarTrainer trainer(lesson.model.data().faces, lesson.views, options, &refiner);
+    AvatarTrainer trainer(example.model.data().faces, example.views, options, &refiner);
     while (state->step < until) trainer.Step(state);
   };
   run(24, &whole);
@@ -247,12 +247,12 @@ TEST(PoseRefiner, SameBytesForAnyThreadsAndAfterAStop) {
 }
 
 TEST(PoseRefiner, NothingIsRefinedBeforeItsTime) {
-  const Lesson& lesson = TheLesson();
-  const PoseRefiner refiner(lesson.model, lesson.betas, OffPoses(3).poses, {});
+  const TrainingExample& example = Example();
+  const PoseRefiner refiner(example.model, example.betas, OffPoses(3).poses, {});
   AvatarTrainerOptions options;
   options.steps = 20, options.refine_from = 0.5;
-  AvatarTrainer trainer(lesson.model.data().faces, lesson.views, options, &refiner);
-  AvatarTrainingState state = AvatarTrainingState::Of(SkinGaussians(lesson.model, lesson.betas, lesson.texels));
+  AvatarTrainer trainer(example.model.data().faces, example.views, options, &refiner);
+  AvatarTrainingState state = AvatarTrainingState::Of(SkinGaussians(example.model, example.betas, example.texels));
   state.poses.Reset(refiner.num_frames(), refiner.num_joints());
   const auto corrected = [&] {
     int count = 0;
@@ -266,15 +266,15 @@ TEST(PoseRefiner, NothingIsRefinedBeforeItsTime) {
 }
 
 TEST(PoseRefiner, RefusesWhatDoesNotFit) {
-  const Lesson& lesson = TheLesson();
+  const TrainingExample& example = Example();
   const OffPoses off(1);
   PoseRefinerOptions options;
   options.photo_sigma = 0;
-  EXPECT_THROW(PoseRefiner(lesson.model, lesson.betas, off.poses, options), std::invalid_argument);
+  EXPECT_THROW(PoseRefiner(example.model, example.betas, off.poses, options), std::invalid_argument);
   std::vector<TrackedPose> other = off.poses;
   other[1].pose.rotations.pop_back();
-  EXPECT_THROW(PoseRefiner(lesson.model, lesson.betas, other, {}), std::invalid_argument);
-  const PoseRefiner refiner(lesson.model, lesson.betas, off.poses, {});
+  EXPECT_THROW(PoseRefiner(example.model, example.betas, other, {}), std::invalid_argument);
+  const PoseRefiner refiner(example.model, example.betas, off.poses, {});
   PoseCorrections corrections;
   corrections.Reset(4, refiner.num_joints());
   std::vector<float> by_bones(12 * static_cast<size_t>(refiner.num_joints()), 1.0F);
@@ -286,8 +286,8 @@ TEST(PoseRefiner, RefusesWhatDoesNotFit) {
   EXPECT_FALSE(corrections.IsZero(0)) << "and the next one goes on";
   by_bones.pop_back();
   EXPECT_THROW(refiner.Step(0, by_bones, 5000, 0, &corrections), std::invalid_argument);
-  const PoseRefiner fewer(lesson.model, lesson.betas, {off.poses[0]}, {});
-  EXPECT_THROW(AvatarTrainer(lesson.model.data().faces, lesson.views, PosesAlone(4), &fewer), std::invalid_argument);
+  const PoseRefiner fewer(example.model, example.betas, {off.poses[0]}, {});
+  EXPECT_THROW(AvatarTrainer(example.model.data().faces, example.views, PosesAlone(4), &fewer), std::invalid_argument);
 }
 
 }  // namespace

@@ -23,13 +23,13 @@ int TexelsOf(const Image& image, const Colour& colour) {
 
 TEST(PersonTexture, APersonOfOneColourHasItEverywhereWhenFilledAndWhereSeenWhenNot) {
   const Track track = ShortTrack();
-  const Image picture(track.camera.width, track.camera.height, kColour);
+  const Image image(track.camera.width, track.camera.height, kColour);
   for (const TextureFill fill : {TextureFill::kNone, TextureFill::kPyramid, TextureFill::kLaplace}) {
     PersonTextureOptions options;
     options.size = 64;
     options.fill = fill;
     PersonTexture texture(BuiltinBody(), track, options);
-    for (int t = 0; t < track.num_frames(); ++t) EXPECT_TRUE(texture.Add(t, picture));
+    for (int t = 0; t < track.num_frames(); ++t) EXPECT_TRUE(texture.Add(t, image));
     const auto images = texture.Merge();
     ASSERT_TRUE(images);
     EXPECT_GT(images->texels_seen, 100);
@@ -49,17 +49,17 @@ TEST(PersonTexture, FramesWithoutAFitOfTheirOwnAreNotTaken) {
   track.frame_status[2] = FrameStatus::kInterpolated;
   track.frame_status[3] = FrameStatus::kWeak;
   track.motion.trans.row(4).setConstant(std::nan(""));
-  const Image picture(track.camera.width, track.camera.height, kColour);
+  const Image image(track.camera.width, track.camera.height, kColour);
   PersonTexture texture(BuiltinBody(), track, {.size = 64});
-  EXPECT_FALSE(texture.Add(1, picture));
-  EXPECT_FALSE(texture.Add(2, picture));
-  EXPECT_FALSE(texture.Add(4, picture));
+  EXPECT_FALSE(texture.Add(1, image));
+  EXPECT_FALSE(texture.Add(2, image));
+  EXPECT_FALSE(texture.Add(4, image));
   EXPECT_FALSE(texture.Merge());
-  EXPECT_TRUE(texture.Add(3, picture));
+  EXPECT_TRUE(texture.Add(3, image));
   EXPECT_TRUE(texture.Merge());
 }
 
-TEST(PersonTexture, RefusesPicturesOfAnotherSizeAndBodiesWithoutUv) {
+TEST(PersonTexture, RefusesImagesOfAnotherSizeAndBodiesWithoutUv) {
   const Track track = ShortTrack();
   PersonTexture texture(BuiltinBody(), track, {.size = 64});
   EXPECT_THROW(texture.Add(0, Image(100, 100)), std::invalid_argument);

@@ -141,7 +141,7 @@ TEST_F(UvFill, PyramidIsNearTheLaplacian) {
 }
 
 TEST_F(UvFill, SeamsDoNotShow) {
-  // Where a hole crosses a seam its two sides meet: neighbours across the seam differ no more than those beside it.
+  // At a seam inside a hole the two sides agree: neighbours across the seam differ no more than those beside it.
   for (const auto& [name, fill] : Fillers()) {
     std::vector<float> map = WithHoles(0);
     fill(known_, 1, map);

@@ -63,7 +63,7 @@ TEST_F(WholeTextureTest, OneColourStaysOneColour) {
   const WholeTexture whole =
       Make(Seen([&](const auto&) { return colour; }, [](const Eigen::Vector3d& p) { return p.z() > 0; }));
   Visit(whole, [&](const auto&, BodyRegion, TexelSource source, const Eigen::Vector3f& found) {
-    EXPECT_NE(source, TexelSource::kNowhere);
+    EXPECT_NE(source, TexelSource::kEmpty);
     EXPECT_LT((found - colour).cwiseAbs().maxCoeff(), 2e-3F);
   });
   for (size_t i = 0; i < table_.size(); ++i) {

@@ -61,7 +61,7 @@ class FlatNode {
     std::memcpy(out->data() + at, &value, sizeof(T));
   }
 
-  /// Appends the node and all below it; returns where it begins.
+  /// Appends the node and its descendants; returns its offset.
   size_t Write(std::string* out) const {  // NOLINT(misc-no-recursion)
     out->append((4 - out->size() % 4) % 4, '\0');
     size_t at = out->size(), slots = at + 4;

@@ -28,7 +28,7 @@ std::string RefusalOf(const Writer& writer, const std::vector<int64_t>& shape) {
   return FileErrorOf("net.onnx: ", [&] { NetworkOf(writer, shape); });
 }
 
-TEST(OnnxGraphs, ComputesWhatHangsOnThePicture) {
+TEST(OnnxGraphs, ComputesWhatHangsOnTheImage) {
   Writer writer;
   writer.Input("x", {1, 2}).Floats("two", {}, {2}).Floats("w", {2}, {10, 20});
   writer.Node("Mul", {"two", "w"}, {"constant"}).Node("Add", {"x", "constant"}, {"y"});
@@ -74,27 +74,27 @@ TEST(OnnxGraphs, SigmoidOfSomethingElseIsNoSwish) {
   EXPECT_NEAR(NetworkOf(square, {1, 1, 1, 1}).Run({3})[0].floats[0], 36, 1e-4);
 }
 
-TEST(OnnxGraphs, ShapesComeAlongWithThePicture) {
+TEST(OnnxGraphs, ShapesComeAlongWithTheImage) {
   // Softmax of mean · w plus 0, 1: two numbers whose odds are e^(y1 + 1 − y0).
   const GraphExecutor network = NetworkOf(SmallOnnxNetworks()[1], {1, 3, 4, 4});
-  std::vector<float> picture(48, 0.0F);
-  for (size_t i = 0; i < 16; ++i) picture[i] = 0.5F;
-  const std::vector<GraphTensor> outputs = network.Run(picture);
+  std::vector<float> image(48, 0.0F);
+  for (size_t i = 0; i < 16; ++i) image[i] = 0.5F;
+  const std::vector<GraphTensor> outputs = network.Run(image);
   EXPECT_THAT(outputs[0].shape, ElementsAre(2, 1));
   EXPECT_NEAR(std::log(outputs[0].floats[1] / outputs[0].floats[0]), 1 + 0.5 * (2 - 1), 1e-5);
 }
 
 TEST(OnnxGraphs, ThreadsAndCopiesGiveEqualBits) {
   const GraphExecutor network = NetworkOf(SmallOnnxNetworks()[0], {1, 3, 6, 6});
-  std::vector<float> picture(108);
-  for (size_t i = 0; i < picture.size(); ++i) picture[i] = float(i % 13) / 13;
-  const std::vector<float> alone = network.Run(picture)[0].floats.Copy();
+  std::vector<float> image(108);
+  for (size_t i = 0; i < image.size(); ++i) image[i] = float(i % 13) / 13;
+  const std::vector<float> alone = network.Run(image)[0].floats.Copy();
   std::vector<std::vector<float>> results(4);
   std::vector<std::thread> threads;
   threads.reserve(results.size());
   for (auto& result : results) {
-    threads.emplace_back([&result, copy = network, &picture] {
-      for (int i = 0; i < 20; ++i) result = copy.Run(picture)[0].floats.Copy();
+    threads.emplace_back([&result, copy = network, &image] {
+      for (int i = 0; i < 20; ++i) result = copy.Run(image)[0].floats.Copy();
     });
   }
   for (std::thread& thread : threads) thread.join();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Each operator of ONNX files against numbers worked out by hand.
+/// Each ONNX operator against values computed by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -113,8 +113,8 @@ TEST(OnnxArithmetic, TwoTensorsThatDoNotFit) {
   ExpectRefusal(Call("Add", {F({1}, {1}), I({1}, {1})}), RunBinary, "one kind");
   ExpectRefusal(Call("Add", {F({1}, {1}), {}}), RunBinary, "input 1 is missing");
   ExpectRefusal(Call("Div", {I({1}, {1}), I({1}, {0})}), RunBinary, "division by zero");
-  const int64_t least = std::numeric_limits<int64_t>::min();
-  ExpectInts(Call("Div", {I({1}, {least}), I({1}, {-1})})(RunBinary), {1}, {least});
+  const int64_t minimum = std::numeric_limits<int64_t>::min();
+  ExpectInts(Call("Div", {I({1}, {minimum}), I({1}, {-1})})(RunBinary), {1}, {minimum});
 }
 
 TEST(OnnxArithmetic, NumberByNumber) {

@@ -101,7 +101,7 @@ TEST(OnnxReader, OtherFilesAreRefused) {
 }
 
 TEST(OnnxReader, WhatIsNotReadIsNamed) {
-  EXPECT_THAT(RefusalOf(Passing().Input("second", {1})), HasSubstr("inputs: 2 of them, expected one picture"));
+  EXPECT_THAT(RefusalOf(Passing().Input("second", {1})), HasSubstr("inputs: 2 of them, expected one image"));
   EXPECT_THAT(RefusalOf(Passing().Node("Relu", {"nowhere"}, {"z"})),
               HasSubstr("node '/Relu' (Relu): 'nowhere' is not there"));
   EXPECT_THAT(RefusalOf(Passing().Node("Relu", {"images"}, {"y"})), HasSubstr("'y' is written twice"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Makes small .onnx files (tracking/detection/inference/onnx_reader.h), valid or with what a test puts wrong.
+/// Makes small .onnx files (tracking/detection/inference/onnx_reader.h), valid or with faults set by a test.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +63,7 @@ class OnnxWriter {
     return ProtoWriter().Bytes(1, name).Message(5, tensor);
   }
 
-  /// A tensor's message; numbers as they lie.
+  /// A tensor's message with raw numbers.
   template <typename T>
   static ProtoWriter Tensor(const std::string& name, Type type, const std::vector<int64_t>& shape,
                             const std::vector<T>& values) {

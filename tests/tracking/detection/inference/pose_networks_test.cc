@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// BlazePose's own networks against TensorFlow Lite's results for a made input: value k = (7·row + 13·column +
-/// 29·channel) mod 256, as k/255 for the landmarks and k/127.5 − 1 for the detector. Skipped where `./dev models` could
-/// not fetch them.
+/// BlazePose's networks against TensorFlow Lite's results for a synthetic input: value k = (7·row + 13·column +
+/// 29·channel) mod 256, as k/255 for the landmarks and k/127.5 − 1 for the detector. Skipped without the networks
+/// (`./dev models`).
 #include <gtest/gtest.h>
 
 #include <algorithm>

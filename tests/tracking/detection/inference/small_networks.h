@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Small networks that use every operator and every way of storing constants between them.
+/// Small networks that together use every operator and every storage of constants.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace bodyloom {
 
-/// The first has three outputs (a row of numbers, their logistic, an image that the others do not need) and one input,
-/// 1×8×8×3, as BlazePose's landmark networks; the second is built as its detector.
+/// The first has three outputs (a row of numbers, their logistic, an image independent of the others) and one input,
+/// 1×8×8×3, like BlazePose's landmark networks; the second is built like its detector.
 inline std::vector<TfliteWriter> SmallNetworks() {
   using Writer = TfliteWriter;
   Writer landmarks;

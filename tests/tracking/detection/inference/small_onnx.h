@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// ONNX networks as a detector's are seen from outside, with answers known in closed form.
+/// ONNX networks with the interface of detectors, and outputs known in closed form.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace bodyloom {
 
-/// A network that adds to fixed numbers what the picture's mean red is: each output is
+/// A network whose outputs depend on the image's mean red:
 ///   fixed + red · moved,   red = the mean of the input's first plane.
 /// `fixed` and `moved` hold an output's numbers in C order.
 struct ScriptedOutput {
@@ -39,7 +39,7 @@ inline OnnxWriter ScriptedNetwork(const std::vector<int64_t>& input, const std::
 struct ScriptedPerson {
   float x = 0, y = 0, width = 0, height = 0, score = 0;
   std::vector<float> points;  ///< x, y, visibility of each landmark
-  float right = 0;            ///< how far box and landmarks go to the right at full red
+  float right = 0;            ///< shift of box and landmarks to the right at full red
 };
 
 /// 1×(5 + 3K)×anchors; anchors beyond the people are empty.
@@ -60,7 +60,7 @@ inline OnnxWriter ScriptedYoloPose(const std::vector<int64_t>& input, const std:
   return ScriptedNetwork(input, {output});
 }
 
-/// A person as COCO sees one who stands: 17 landmarks within a box of that middle and height, all with this visibility.
+/// A standing COCO person: 17 landmarks within a box of this centre and height, all with this visibility.
 inline ScriptedPerson StandingPerson(float x, float y, float height, float score, float visibility) {
   constexpr float kPlaces[17][2] = {
       {0, -0.44F},      {0.02F, -0.46F}, {-0.02F, -0.46F}, {0.04F, -0.45F}, {-0.04F, -0.45F}, {0.11F, -0.32F},
@@ -88,7 +88,7 @@ inline OnnxWriter ScriptedRtmPose(int64_t width, int64_t height, int64_t per_pix
   return ScriptedNetwork({1, 3, height, width}, {peaks(per_pixel * width, columns), peaks(per_pixel * height, rows)});
 }
 
-/// Small networks of all operators' kinds, for damage and for the fuzzer.
+/// Small networks with all kinds of operators, for damage tests and the fuzzer.
 inline std::vector<OnnxWriter> SmallOnnxNetworks() {
   std::vector<OnnxWriter> networks;
   OnnxWriter& conv = networks.emplace_back();

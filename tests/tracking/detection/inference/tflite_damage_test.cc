@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Files that are cut off, changed or something else altogether: read or refused in one line, never overrun.
+/// Truncated, modified and foreign files: read or rejected in one line, without out-of-bounds access.
 #include "tracking/detection/inference/tflite_reader.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Operators of graphs whose images have their channels last, in plain loops, sums in double: what the executor is
-/// compared with.
+/// Reference implementation of the operators of graphs with channels-last images: plain loops with sums in double.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 
 namespace bodyloom {
 
-/// An image that is 0 outside.
+/// An image with zero padding.
 class ReferenceImage {
  public:
   ReferenceImage(const std::vector<int64_t>& shape, std::vector<float>* values)

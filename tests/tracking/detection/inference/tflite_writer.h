@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Makes small .tflite files (tracking/detection/inference/tflite_reader.h), valid or with what a test puts wrong.
+/// Makes small .tflite files (tracking/detection/inference/tflite_reader.h), valid or with faults set by a test.
 #pragma once
 
 #include <bit>
@@ -13,14 +13,14 @@
 
 namespace bodyloom {
 
-/// Exact for numbers that half precision has (not subnormal).
+/// Half precision; exact for representable, not subnormal numbers.
 inline uint16_t HalfOf(float value) {
   if (value == 0) return 0;
   const auto bits = std::bit_cast<uint32_t>(value);
   return static_cast<uint16_t>((bits >> 16 & 0x8000) | ((bits >> 23 & 255) - 112) << 10 | (bits >> 13 & 1023));
 }
 
-/// Multiples of 1/16 in (−4, 4), so that half precision has them; some are 0.
+/// Multiples of 1/16 in (−4, 4), which are exact in half precision; some are 0.
 inline std::vector<float> SomeFloats(size_t count, uint32_t seed) {
   std::vector<float> values(count);
   for (float& value : values) {
@@ -55,14 +55,14 @@ class TfliteWriter {
   enum class Storage { kFloat32, kFloat16, kSparse };
   using Options = std::map<int, int>;
 
-  /// Of what is computed, or of an input.
+  /// Adds a computed tensor or an input.
   int Tensor(const std::vector<int>& shape, int type = 0) { return Add(shape, type, ""); }
   int Input(const std::vector<int>& shape) {
     inputs.push_back(Tensor(shape));
     return inputs.back();
   }
   int Ints(const std::vector<int>& shape, const std::vector<int32_t>& values) { return Add(shape, 2, Raw(values)); }
-  /// As DEQUANTIZE and DENSIFY make it of what is stored.
+  /// Adds a float32 tensor, by DEQUANTIZE and DENSIFY where the storage needs them.
   int Floats(const std::vector<int>& shape, const std::vector<float>& values, Storage storage = Storage::kFloat32) {
     if (storage == Storage::kFloat32) return Add(shape, 0, Raw(values));
     int half = 0;

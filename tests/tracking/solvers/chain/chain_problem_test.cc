@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// What Linearise() leaves for the factorisation and the marginalisation, and the cost.
+/// Output of Linearise() for factorisation and marginalisation, and the cost.
 struct System {
   double cost = 0;
   VectorXd gradient, diagonal, shared_gradient;

@@ -70,10 +70,13 @@ std::unique_ptr<PartLabelMatches> MakeTerm(const Scene& scene, const FrameState&
   return term;
 }
 
+int NumRows(const PartLabelMatches& term) { return term.num_rows(true) + term.num_rows(false); }
+
 FrameSystem Evaluate(const Scene& scene, const PartLabelMatches& term, const FrameState& state,
                      FrameResiduals* residuals = nullptr) {
   FrameData data;
-  data.Get<PartLabelTerm>().term = &term;
+  data.Get<SilhouetteTerm>().matches = &term;
+  data.Get<PartLabelTerm>().matches = &term;
   FrameEvaluator evaluator;
   FrameSystem system;
   evaluator.Evaluate(scene.layout, data, state, scene.betas, scene.log_focal, true, &system, residuals);
@@ -145,7 +148,7 @@ TEST(PartLabelTerm, DerivativesMatchDifferences) {
 
 using twin::Jet;
 
-/// Where the term's points appear, as functions of parameter `column`.
+/// Projections of the term's points as functions of parameter `column`.
 std::vector<Eigen::Matrix<Jet, 2, 1>> TwinPixels(const Scene& scene, const PartLabelMatches& term,
                                                  const FrameState& state, int column) {
   const twin::SeededFrame frame =
@@ -352,7 +355,7 @@ TEST(PartLabelTerm, ATermThatIsOffHasNoRows) {
   EXPECT_EQ(residuals["part labels"].px.size(), 0U);
   EXPECT_EQ(silhouette->Field(2), nullptr);
   options.silhouette_weight = 0;
-  EXPECT_EQ(MakeTerm(*scene, scene->truth, options)->num_rows(), 0);
+  EXPECT_EQ(NumRows(*MakeTerm(*scene, scene->truth, options)), 0);
 }
 
 TEST(PartLabelTerm, AMaskIsASilhouetteWithoutParts) {
@@ -390,11 +393,11 @@ TEST(PartLabelTerm, NothingSeenAsksForNothing) {
     scene->labels.frames[0] = image;
     const auto term = MakeTerm(*scene, scene->truth);
     EXPECT_EQ(term->num_person_pixels(), 0);
-    EXPECT_EQ(term->num_rows(), 0);
+    EXPECT_EQ(NumRows(*term), 0);
     EXPECT_EQ(Evaluate(*scene, *term, scene->truth).cost, 0);
   }
   scene->labels.frames[0] = LabelImage();
-  EXPECT_EQ(MakeTerm(*scene, scene->truth)->num_rows(), 0);
+  EXPECT_EQ(NumRows(*MakeTerm(*scene, scene->truth)), 0);
 }
 
 TEST(PartLabelTerm, UnknownPixelsHaveNoBoundary) {
@@ -406,7 +409,7 @@ TEST(PartLabelTerm, UnknownPixelsHaveNoBoundary) {
   }
   scene->labels.frames[0] = image;
   const auto term = MakeTerm(*scene, scene->truth);
-  ASSERT_GT(term->num_rows(), 100);
+  ASSERT_GT(NumRows(*term), 100);
   for (const PartLabelMatches::Target& target : term->targets()) EXPECT_LT(target.pixel.x(), kWidth / 2 + 1);
   const FrameSystem system = Evaluate(*scene, *term, scene->truth);
   FrameState moved = scene->truth;
@@ -467,7 +470,7 @@ TEST(PartLabelTerm, ABodyOutOfTheImageOrBehindTheCameraStaysFinite) {
   }
   FrameState broken = scene->truth;
   broken.translation.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(MakeTerm(*scene, broken)->num_rows(), 0);
+  EXPECT_EQ(NumRows(*MakeTerm(*scene, broken)), 0);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// L_r and the covariance of dense keypoints: derivatives against Jets with the visible face held, and what unmatched
-// pixels cost.
+// L_r and the covariance of dense keypoints: derivatives against Jets with the visible face fixed, and the cost of
+// unmatched pixels.
 #include "tracking/terms/rendered_uv/rendered_uv_term.h"
 
 #include <gtest/gtest.h>

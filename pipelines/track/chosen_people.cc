@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipelines/track/chosen_people.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "geometry/base/check.h"
+#include "geometry/scene/observations.h"
+#include "pipelines/track/clip_camera_path.h"
+#include "pipelines/video/track_video.h"
+
+namespace bodyloom {
+namespace {
+
+/// Numbers of those to be tracked, in LinkPeople()'s order.
+std::vector<int> ChoosePeople(const TrackPeopleRequest& request, const DetectedClip& clip,
+                              const std::vector<PersonTrack>& everybody) {
+  const std::string& video = request.track.video;
+  if (request.person) {
+    PersonOf(clip.people, *request.person, video);  // throws when there is no such person
+    return {*request.person};
+  }
+  const std::vector<double>& times = clip.people.timestamps;
+  const double fps = VideoFrameRate(times);
+  const double min_frames = std::min(request.min_seconds * fps, 0.5 * double(times.size()));
+  std::vector<int> chosen;
+  for (size_t i = 0; i < everybody.size(); ++i) {
+    if (request.max_people > 0 && int(chosen.size()) == request.max_people) break;
+    if (double(everybody[i].detections.size()) >= min_frames) chosen.push_back(int(i));
+  }
+  if (chosen.empty()) {
+    throw NoPersonFound(everybody.empty() ? Concatenate(video, ": nobody was found in ", times.size(), " frames")
+                                          : Concatenate(video, ": nobody was seen for ", request.min_seconds,
+                                                        " s; --person 0 takes whoever was seen most"));
+  }
+  return chosen;
+}
+
+/// Tracks them; progress is that of all fits.
+TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& scene,
+                        const std::vector<DetectedObservations>& seen,
+                        const std::vector<std::vector<CameraPose>>& cameras, const PipelineCallbacks& callbacks) {
+  std::vector<TrackSequenceInput> inputs;
+  for (const DetectedObservations& person : seen) {
+    TrackSequenceInput& input = inputs.emplace_back(scene.ForTracker());
+    input.keypoints = &person.keypoints;
+    input.part_labels = person.mask ? &*person.mask : nullptr;
+    if (cameras.empty()) continue;
+    input.camera_from_scene = &cameras[inputs.size() - 1];
+    input.camera_scale_m = CameraScaleOf(request.track, *scene.camera_path);
+  }
+  TrackSequenceOptions options = request.track.solve;
+  options.camera_knowledge = scene.camera_knowledge;
+  options.straight_knees_weight = StraightKneesWeight(request.track, seen.front().keypoints.convention);
+  bool cancelled = false;
+  options.progress = [&](const TrackProgress& at) {
+    cancelled = !callbacks.ReportProgress(at.stage, at.fraction);
+    return !cancelled;
+  };
+  TrackPeopleResult result = TrackPeople(std::move(inputs), options);
+  if (cancelled) throw Cancelled();
+  return result;
+}
+
+}  // namespace
+
+void CheckTrackPeopleRequest(const TrackPeopleRequest& request) {
+  if (request.track.video.empty()) throw RequestError("the video is required");
+  if (request.person && request.max_people > 0) {
+    throw RequestError("--person and --people both choose who is tracked, expected one of them");
+  }
+  if (request.track.stature_m > 0 && !request.person && request.max_people != 1) {
+    throw RequestError("--stature is one person's: say whose with --person, or give --people 1");
+  }
+  if (request.track.camera == "weak") {
+    throw RequestError("weak perspective puts nobody into a common space: use track for one person at a time");
+  }
+}
+
+ChosenPeople DetectAndChoosePeople(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks) {
+  ChosenPeople people;
+  people.clip = DetectForTracking(request.track, callbacks, request.max_people);
+  people.everybody = LinkPeople(people.clip.people);
+  people.chosen = ChoosePeople(request, people.clip, people.everybody);
+  return people;
+}
+
+TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople& people) {
+  const PeopleSequence& detected = people.clip.people;
+  TrackPeopleReport report;
+  report.video = request.track.video;
+  report.width = detected.image_width;
+  report.height = detected.image_height;
+  report.num_frames = int(detected.frames.size());
+  report.fps = VideoFrameRate(detected.timestamps);
+  report.network = FrameDetectorName(request.track.detector);
+  const std::vector<FoundPerson> found = FoundPeople(detected, people.everybody);
+  report.num_found = int(found.size());
+  for (const int number : people.chosen) {
+    TrackedPerson& person = report.people.emplace_back();
+    person.number = number;
+    person.seen = found[size_t(number)];
+  }
+  return report;
+}
+
+TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneInputs& scene,
+                                 const ChosenPeople& people, const PipelineCallbacks& callbacks,
+                                 TrackPeopleReport* report) {
+  TrackedScene tracked;
+  for (const int number : people.chosen) {
+    const PersonTrack& person = people.everybody[size_t(number)];
+    tracked.seen.push_back(ObservationsOf(people.clip, person, SpanOf(person), request.track, scene));
+  }
+  const size_t count = tracked.seen.size();
+  std::vector<std::vector<CameraPose>> cameras;  // of each person's frames
+  for (size_t i = 0; scene.camera_path && i < count; ++i) {
+    cameras.push_back(CamerasAt(request.track, *scene.camera_path, people.clip.people.timestamps,
+                                tracked.seen[i].keypoints.timestamps, &report->camera_path));
+  }
+  callbacks.Begin(Concatenate("tracking ", count, count == 1 ? " person" : " people"));
+  tracked.result = Solve(request, scene, tracked.seen, cameras, callbacks);
+  report->scene = tracked.result.summary.scene;
+  for (size_t i = 0; i < count; ++i) {
+    TrackedPerson& person = report->people[i];
+    person.solve = tracked.result.people[i].summary;
+    person.hidden = tracked.result.summary.hidden[i];
+    person.fitted_again = tracked.result.summary.fitted_again[i] != 0;
+    if (!person.solve.IsUsable()) continue;
+    report->world = tracked.result.people[i].track.world.value_or(WorldFrame());
+    if (tracked.any) continue;
+    tracked.any = true;
+    report->camera_scale = person.solve.camera_path;
+    const std::string warning = MovingCameraWarning(person.solve.camera_path, person.solve.ground);
+    if (!warning.empty()) callbacks.Message(warning);
+  }
+  return tracked;
+}
+
+void RequireAnyTrack(const TrackPeopleRequest& request, const TrackedScene& tracked) {
+  if (tracked.any) return;
+  throw NoPersonFound(request.track.video +
+                      ": nobody could be tracked: " + tracked.result.people.front().summary.message);
+}
+
+}  // namespace bodyloom
