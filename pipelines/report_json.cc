@@ -26,6 +26,15 @@ nlohmann::ordered_json ToJson(const WorldFrame& world) {
           {"world_from_camera", matrix}};
 }
 
+nlohmann::ordered_json ToJson(const RoomPhysics& room) {
+  if (room.frames == 0) return nullptr;
+  Evaluation values;
+  AddRoomPhysics(room, &values);
+  nlohmann::ordered_json json = {{"frames", room.frames}};
+  for (const EvaluationValue& value : values.values) json[value.name] = value.value;
+  return json;
+}
+
 void WriteReport(const std::string& path, const nlohmann::ordered_json& report) {
   if (!path.empty()) WriteFileAtomically(path, report.dump(2) + "\n");
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "data_tools/evaluation/room_physics.h"
 #include "geometry/base/stopwatch.h"
 #include "geometry/scene/world_frame.h"
 
@@ -15,6 +16,10 @@ nlohmann::ordered_json ToJson(const StageSeconds& seconds);
 
 /// {"source", "vertical_sigma_deg", "height_sigma_m", "camera_height_m", "world_from_camera": 4×4}
 nlohmann::ordered_json ToJson(const WorldFrame& world);
+
+/// {"frames", "hover_percent", "hover_unexplained_percent", "lowest_point_mm", "ground_penetration_p95_mm",
+/// "ground_penetration_percent", "contact_slide_mps"} (data_tools/evaluation/room_physics.h); null without frames.
+nlohmann::ordered_json ToJson(const RoomPhysics& room);
 
 /// Writes a report, whole or not at all; an empty path: none.
 void WriteReport(const std::string& path, const nlohmann::ordered_json& report);

@@ -63,6 +63,7 @@ MultiViewClip ReadAistClip(const std::string& annotations_folder, const std::str
   MultiViewClip clip;
   clip.name = sequence;
   clip.fps = kAistFps;
+  clip.up_in_world = Eigen::Vector3d::UnitY();
   clip.coco17_in_world = ReadAistKeypoints3d((root / "keypoints3d" / file).string());
   if (std::filesystem::exists(motion)) {
     const PicklePtr file = ReadPickleFile(motion);

@@ -7,6 +7,7 @@
 #include "data_tools/evaluation/evaluation.h"
 #include "data_tools/evaluation/metrics.h"
 #include "data_tools/evaluation/metrics_image.h"
+#include "data_tools/evaluation/room_errors.h"
 #include "data_tools/evaluation/sigma_reliability.h"
 #include "geometry/base/check.h"
 #include "geometry/body/body_model.h"
@@ -150,6 +151,9 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
   result.Add("root_lateral_err_mm", root.lateral * kMm, "its part across the viewing direction");
   result.Add("root_depth_err_mm", root.depth * kMm, "its part in depth");
   AddSigmaReliability(JudgedLandmarks(track, source, p, g), &result);
+  if (!clip.up_in_world.isZero()) {
+    AddRoomErrors(track, G, own.pose.camera_from_world_rotation * clip.up_in_world, timestamps, &result);
+  }
 
   // The track in the world: root where it really was, one scale for the clip.
   std::vector<MatrixX3d> placed_in_world(T);

@@ -26,6 +26,7 @@ struct MultiViewClip {
   std::string name;
   std::vector<RigView> views;
   std::vector<MatrixX3d> coco17_in_world;                 ///< T of 17×3 metres; NaN where unknown
+  Eigen::Vector3d up_in_world = Eigen::Vector3d::Zero();  ///< the vertical; zero: not known
   Motion motion;            ///< T SMPL poses in the world frame; num_frames() = 0 when there are none
   double motion_scale = 1;  ///< metres of the world per metre of the motion's body (its shape is the template's)
   double fps = 0;           ///< nominal; used to difference positions instead of rounded timestamps
@@ -46,7 +47,8 @@ struct EvaluateHeldOutViewsOptions {
 ///   heldout_*          distance in pixels of s (P − hip P) + hip G, carried into every other camera, to its detections
 ///   fitview_*          distance of P, through the clip's camera, to the fitted view's detections
 ///   fitview_own_*      the same through the track's own camera (differs when the focal length was estimated)
-/// and PCK, percent of person height (data_tools/evaluation/metrics_image.h); with `motion`, the angle between the
+/// and PCK, percent of person height (data_tools/evaluation/metrics_image.h); where the vertical is known and the track
+/// states a world, the errors in the room (data_tools/evaluation/room_errors.h); with `motion`, the angle between the
 /// track's joint rotations and SMPL's, both on the same 24 joints, the root's in the camera frame. A frame whose
 /// landmarks are not all finite is scored with the nearest frame that has them. Throws std::invalid_argument when the
 /// view is unknown, sizes disagree, or nothing overlaps.

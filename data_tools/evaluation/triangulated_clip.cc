@@ -152,6 +152,7 @@ MultiViewClip ReadPose2SimClip(const std::string& folder, const Pose2SimOptions&
   MultiViewClip clip;
   clip.name = options.trial;
   clip.fps = options.fps;
+  clip.up_in_world = Eigen::Vector3d::UnitZ();
   for (const char* number : {"01", "02"}) {
     const std::string detections =
         (root / options.trial / "json_single" / ("cam" + std::string(number) + "_json")).string();

@@ -13,6 +13,7 @@
 #include "data_tools/evaluation/aist_evaluation.h"
 #include "data_tools/evaluation/evaluation.h"
 #include "data_tools/evaluation/part_label_evaluation.h"
+#include "data_tools/evaluation/room_physics.h"
 #include "data_tools/evaluation/self_penetration.h"
 #include "data_tools/evaluation/triangulated_clip.h"
 #include "data_tools/evaluation/truth_evaluation.h"
@@ -100,6 +101,12 @@ void AddSelfPenetrationOf(const Track& track, const std::optional<Motion>& true_
   if (true_motion) add(*true_motion, "gt_");
 }
 
+/// Measures the tracked body in the world that the track states.
+void AddRoomPhysicsOf(const Track& track, const BodyModel& body, Evaluation* evaluation) {
+  const bool fits = track.motion.poses.cols() <= 3 * body.num_joints() && track.motion.betas.size() <= body.num_betas();
+  if (track.world && fits) AddRoomPhysics(MeasureRoomPhysics(track, body, ThreadsFor(0)), evaluation);
+}
+
 /// Checks the request and its files, except the track and the body. `truth`: given in memory.
 void CheckEvaluation(const EvaluateTrackRequest& request, const Track* truth) {
   if ((!request.truth.empty() || truth != nullptr) && !request.seen.empty()) {
@@ -123,6 +130,7 @@ Evaluation EvaluateChecked(const EvaluateTrackRequest& request, const BodyModel&
   if (truth != nullptr) true_motion = truth->motion;
   Evaluation evaluation = truth != nullptr ? EvaluateAgainstTrack(track, *truth, body)
                                            : EvaluateAgainstFiles(request, track, body, &true_motion);
+  AddRoomPhysicsOf(track, body, &evaluation);
   AddSelfPenetrationOf(track, true_motion, body, callbacks, &evaluation);
   if (!request.json.empty()) {
     WriteFileAtomically(request.json, EvaluationJson(evaluation));

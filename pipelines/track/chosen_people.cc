@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/track/clip_camera_path.h"
 #include "pipelines/video/track_video.h"
@@ -128,7 +129,9 @@ TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneI
     person.hidden = tracked.result.summary.hidden[i];
     person.fitted_again = tracked.result.summary.fitted_again[i] != 0;
     if (!person.solve.IsUsable()) continue;
-    report->world = tracked.result.people[i].track.world.value_or(WorldFrame());
+    const Track& track = tracked.result.people[i].track;
+    report->world = track.world.value_or(WorldFrame());
+    person.room = RoomPhysicsOnGround(track, *scene.body, ThreadsFor(request.track.solve.num_threads));
     if (tracked.any) continue;
     tracked.any = true;
     report->camera_scale = person.solve.camera_path;

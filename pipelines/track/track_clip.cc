@@ -7,6 +7,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
+#include "geometry/base/parallel.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/files.h"
@@ -56,6 +57,7 @@ void WriteReportPage(const TrackRequest& request, const TrackInputs& inputs, con
   page.video_px_from_camera_px = inputs.camera.video_px_from_camera_px;
   page.title = std::filesystem::path(report->detections).filename().string();
   page.summary = report->solve.BriefReport();
+  if (report->room.frames > 0) page.summary += "room     " + report->room.BriefReport() + "\n";
   callbacks.Begin("writing the page");
   WriteClipPage(page, callbacks);
   report->outputs.push_back(request.report);
@@ -127,6 +129,7 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
     if (!warning.empty()) callbacks.Message(warning);
     clock.Begin("write");
     report.world = *result.track.world;
+    report.room = RoomPhysicsOnGround(result.track, *inputs.body, ThreadsFor(request.solve.num_threads));
     if (inputs.initialiser) report.initialiser = ReportOn(*inputs.initialiser, inputs, result.track);
     WriteTrack(request.out, result.track);
     report.outputs.push_back(request.out);

@@ -26,6 +26,7 @@ std::string PersonText(const TrackedPerson& person) {
   if (person.solve.stature_m > 0) {
     text += "         taken to be " + Fixed(person.solve.stature_m, 2) + " m tall\n";
   }
+  if (person.room.frames > 0) text += "         " + person.room.BriefReport() + "\n";
   if (person.hidden.any()) {
     text += Concatenate("         partly hidden by others in ", person.hidden.frames, " frames\n");
   }
@@ -74,7 +75,8 @@ Json PersonJson(const TrackedPerson& person) {
           {"stature_m", solve.stature_m},
           {"swaps_repaired", solve.num_swaps_repaired},
           {"hidden_frames", person.hidden.frames},
-          {"fitted_again", person.fitted_again}};
+          {"fitted_again", person.fitted_again},
+          {"room", ToJson(person.room)}};
 }
 
 }  // namespace

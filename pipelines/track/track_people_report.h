@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "data_tools/evaluation/room_physics.h"
 #include "geometry/base/stopwatch.h"
 #include "pipelines/detect/detect_clip.h"
 #include "pipelines/track/clip_camera_path.h"
@@ -22,6 +23,7 @@ struct TrackedPerson {
   TrackSequenceSummary solve;
   HiddenCounts hidden;        ///< occlusions by other people
   bool fitted_again = false;  ///< with the scene shared by all fits
+  RoomPhysics room;           ///< where a ground was found or given; else of no frame
   std::string track;          ///< file; empty if not tracked (solve.message)
 };
 

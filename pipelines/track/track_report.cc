@@ -149,6 +149,7 @@ std::string ToText(const TrackReport& report) {
     text += "ground   none: " + solve.ground.why + "\n";
   }
   if (solve.IsUsable()) text += "world    " + report.world.BriefReport() + "\n";
+  if (report.room.frames > 0) text += "room     " + report.room.BriefReport() + "\n";
   text += "time     " + Fixed(report.total_seconds, 2) + " s (" + StagesText(StagesOf(report)) + ")";
   if (report.num_frames > 0 && report.total_seconds > 0) {
     text += ", " + Fixed(1e3 * report.total_seconds / report.num_frames, 2) + " ms a frame";
@@ -207,6 +208,7 @@ std::string ToJson(const TrackReport& report) {
       {"swaps_repaired", solve.num_swaps_repaired},
       {"ground", ground_json},
       {"world", ToJson(report.world)},
+      {"room", ToJson(report.room)},
       {"seconds", seconds},
       {"peak_memory_bytes", report.peak_memory_bytes},
       {"ran", ran},

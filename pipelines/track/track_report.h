@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "data_tools/evaluation/room_physics.h"
 #include "geometry/base/stopwatch.h"
 #include "pipelines/track/clip_camera_path.h"
 #include "tracking/clip/initialiser_gain.h"
@@ -29,6 +30,7 @@ struct TrackReport {
   TrackSequenceSummary solve;
   int num_frames = 0;
   WorldFrame world;  ///< the track's
+  RoomPhysics room;  ///< of the track, where a ground was found or given; else of no frame
   CameraPathReport camera_path;
   std::optional<InitialiserReport> initialiser;
   StageSeconds seconds;  ///< TrackClip's own stages; the one named kSolveStage is split by solve.seconds

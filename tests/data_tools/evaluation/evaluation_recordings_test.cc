@@ -102,6 +102,53 @@ TEST(EvaluationRecordingsTest, AistAgreesWithTheIndependentScorer) {
   EXPECT_EQ(compared, 48);
 }
 
+TEST(EvaluationRecordingsTest, RoomErrorsAgreeWithTheIndependentScorer) {
+  const std::string scorer = kShared + "/tools/score_room.py";
+  if (!std::filesystem::exists(kAist) || !std::filesystem::exists(scorer)) {
+    GTEST_SKIP() << "no AIST++ recordings or scorer in " << kShared;
+  }
+  if (OutputOf("/usr/bin/python3 -c 'import numpy; print(1)' 2>/dev/null") != "1\n") {
+    GTEST_SKIP() << "no numpy for /usr/bin/python3";
+  }
+  const std::pair<const char*, const char*> kNames[] = {
+      {"room_g_mpjpe_mm", "g_mpjpe"},     {"room_w_mpjpe_mm", "w_mpjpe"},
+      {"room_wa_mpjpe_mm", "wa_mpjpe"},   {"tilt_deg", "tilt_deg"},
+      {"knee_err_deg", "knee_deg"},       {"ankle_height_err_mm", "ankle_height_abs_mm"},
+      {"knee_bias_deg", "knee_bias_deg"}, {"ankle_height_bias_mm", "ankle_height_bias_mm"},
+      {"trunk_err_deg", "trunk_deg"}};
+  TemporaryFolder folder;
+  for (const char* sequence : kSequences) {
+    const MultiViewClip clip = ReadAistClip(kAist, kAist + "/cameras", sequence);
+    const std::string view = "c05";
+    Track track = FaultyTrack(clip, view, 576);
+    const CameraPose& pose = clip.views[4].pose;
+    ASSERT_EQ(clip.views[4].name, view);
+    // A vertical that is off by some degrees, and a ground a little too high.
+    const Eigen::Matrix3d off = RotationFromAxisAngle({0.06, 0, 0.04});
+    const Eigen::Vector3d centre = -pose.camera_from_world_rotation.transpose() * pose.camera_from_world_translation;
+    track.world = WorldOverGround(off * pose.camera_from_world_rotation * Eigen::Vector3d::UnitY(), centre.y() - 0.05);
+    std::vector<double> values, world;
+    for (const MatrixX3d& points : track.coco17)
+      values.insert(values.end(), points.data(), points.data() + points.size());
+    for (int r = 0; r < 4; ++r) {
+      for (int c = 0; c < 4; ++c) {
+        world.push_back(r == 3 ? double(c == 3) : c == 3 ? track.world->translation[r] : track.world->rotation(r, c));
+      }
+    }
+    const std::string path = folder.File("track.npz");
+    WriteNpz(path, {{"coco17", NdArray::FromDoubles(values.data(), {576, 17, 3})},
+                    {"world_from_camera", NdArray::FromDoubles(world.data(), {4, 4})},
+                    {"world_source", NdArray::FromString("given")}});
+    const nlohmann::json expected = nlohmann::json::parse(OutputOf(
+        "/usr/bin/python3 " + scorer + " " + path + " " + kAist + " " + kAist + "/cameras " + sequence + " " + view));
+    const Evaluation e = EvaluateAist(track, clip, view);
+    for (const auto& [name, key] : kNames) {
+      // The scorer prints two decimals.
+      EXPECT_NEAR(e.Value(name), expected[key].get<double>(), 0.5e-2 + 1e-6) << sequence << " " << name;
+    }
+  }
+}
+
 TEST(EvaluationRecordingsTest, AistReferenceReprojectsAtTheNoiseFloor) {
   if (!std::filesystem::exists(kAist)) GTEST_SKIP() << "no AIST++ recordings in " << kShared;
   for (const char* sequence : kSequences) {

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/evaluation/room_physics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "data_tools/evaluation/metrics.h"
+#include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
+#include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/body/skinning.h"
+
+namespace bodyloom {
+
+using Eigen::RowVector3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kContactM = 0.04, kTouchingM = 0.02, kPenetrationM = 0.02, kGravity = 9.81;
+constexpr int kFramesAtOnce = 64;
+
+/// Heights and slides of the frames that have a result, frame by frame.
+class Surface {
+ public:
+  Surface(const Track& track, const BodyModel& body, int num_threads)
+      : track_(track), body_(body), skinner_(body, OptionsFor(num_threads)) {
+    for (int t = 0; t < track.num_frames(); ++t) {
+      if (track.HasResult(t)) frames_.push_back(t);
+    }
+  }
+
+  void Measure() {
+    const ShapedBody shaped = skinner_.Shape(track_.motion.betas);
+    const size_t size = 3 * static_cast<size_t>(skinner_.num_vertices());
+    std::vector<double> vertices;
+    std::vector<BodyPose> poses;
+    for (size_t begin = 0; begin < frames_.size(); begin += kFramesAtOnce) {
+      const size_t end = std::min(frames_.size(), begin + kFramesAtOnce);
+      poses.clear();
+      for (size_t i = begin; i < end; ++i) {
+        const Motion& motion = track_.motion;
+        poses.push_back(PoseFromAxisAngle(body_, motion.poses.row(frames_[i]).transpose(),
+                                          motion.trans.row(frames_[i]).transpose()));
+      }
+      vertices.resize(size * poses.size());
+      skinner_.Skin(shaped, poses, vertices);
+      for (size_t i = 0; i < poses.size(); ++i)
+        Add(begin + i, Eigen::Map<const MatrixX3d>(&vertices[size * i], body_.num_vertices(), 3));
+    }
+  }
+
+  [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
+  [[nodiscard]] const std::vector<double>& slides() const { return slides_; }
+  [[nodiscard]] double SecondsAt(size_t i) const { return track_.motion.timestamps[frames_[i]]; }
+  /// Frame i comes right after the one before it.
+  [[nodiscard]] bool Continues(size_t i) const { return i > 0 && frames_[i] == frames_[i - 1] + 1; }
+
+ private:
+  static SkinnerOptions OptionsFor(int num_threads) {
+    SkinnerOptions options;
+    options.num_threads = num_threads;
+    return options;
+  }
+  void Add(size_t i, const MatrixX3d& in_camera) {
+    MatrixX3d now = track_.world->PointsFromCamera(in_camera);
+    heights_.push_back(now.col(1).minCoeff());
+    if (Continues(i)) {
+      std::vector<double> speeds;
+      const double seconds = SecondsAt(i) - SecondsAt(i - 1);
+      for (Eigen::Index v = 0; v < now.rows(); ++v) {
+        if (std::max(std::abs(now(v, 1)), std::abs(last_(v, 1))) > kTouchingM) continue;
+        speeds.push_back(std::hypot(now(v, 0) - last_(v, 0), now(v, 2) - last_(v, 2)) / seconds);
+      }
+      if (!speeds.empty()) slides_.push_back(Percentile(speeds, 50));
+    }
+    last_ = std::move(now);
+  }
+
+  const Track& track_;
+  const BodyModel& body_;
+  Skinner skinner_;
+  std::vector<int> frames_;
+  std::vector<double> heights_, slides_;
+  MatrixX3d last_;
+};
+
+/// Number of frames that are higher than a flight between the surrounding contacts allows.
+int CountUnexplained(const Surface& surface) {
+  const std::vector<double>& h = surface.heights();
+  int count = 0;
+  for (size_t begin = 0; begin < h.size();) {
+    if (h[begin] <= kContactM) {
+      ++begin;
+      continue;
+    }
+    size_t end = begin + 1;
+    while (end < h.size() && h[end] > kContactM && surface.Continues(end)) ++end;
+    const double from = surface.SecondsAt(surface.Continues(begin) ? begin - 1 : begin);
+    const double to = surface.SecondsAt(end < h.size() && surface.Continues(end) ? end : end - 1);
+    for (size_t i = begin; i < end; ++i) {
+      const double t = surface.SecondsAt(i);
+      if (h[i] > kContactM + 0.5 * kGravity * (t - from) * (to - t)) ++count;
+    }
+    begin = end;
+  }
+  return count;
+}
+
+}  // namespace
+
+std::string RoomPhysics::BriefReport() const {
+  if (frames == 0) return "";
+  char text[160];
+  std::snprintf(text, sizeof(text),
+                "on the ground or in flight in %.0f %% of the frames, within %.0f mm below it in 95 %%",
+                100 * (1 - unexplained_hover_share), kMmPerMetre * penetration_p95_m);
+  std::string line = text;
+  if (!std::isnan(contact_slide_mps)) {
+    std::snprintf(text, sizeof(text), ", contacts slide %.2f m/s", contact_slide_mps);
+    line += text;
+  }
+  return line;
+}
+
+RoomPhysics MeasureRoomPhysics(const Track& track, const BodyModel& body, int num_threads) {
+  BODYLOOM_CHECK(track.world.has_value(), "room physics: the track states no world");
+  Surface surface(track, body, num_threads);
+  surface.Measure();
+  const std::vector<double>& heights = surface.heights();
+  RoomPhysics physics;
+  physics.frames = static_cast<int>(heights.size());
+  physics.contact_slide_mps = surface.slides().empty() ? kNotMeasured : Percentile(surface.slides(), 50);
+  if (heights.empty()) {
+    physics.hover_share = physics.unexplained_hover_share = physics.lowest_point_m = kNotMeasured;
+    physics.penetration_p95_m = physics.penetration_share = kNotMeasured;
+    return physics;
+  }
+  const auto count = static_cast<double>(heights.size());
+  std::vector<double> depths;
+  int hovers = 0, penetrates = 0;
+  for (const double height : heights) {
+    depths.push_back(std::max(0.0, -height));
+    hovers += height > kContactM;
+    penetrates += height < -kPenetrationM;
+  }
+  physics.hover_share = hovers / count;
+  physics.unexplained_hover_share = CountUnexplained(surface) / count;
+  physics.lowest_point_m = Percentile(heights, 50);
+  physics.penetration_p95_m = Percentile(depths, 95);
+  physics.penetration_share = penetrates / count;
+  return physics;
+}
+
+RoomPhysics RoomPhysicsOnGround(const Track& track, const BodyModel& body, int num_threads) {
+  const bool has_ground =
+      track.world && track.world->source != WorldSource::kLevelCamera && track.world->source != WorldSource::kVertical;
+  return has_ground ? MeasureRoomPhysics(track, body, num_threads) : RoomPhysics();
+}
+
+void AddRoomPhysics(const RoomPhysics& physics, Evaluation* evaluation) {
+  const auto add = [&](const char* name, double value, const char* meaning) { evaluation->Add(name, value, meaning); };
+  add("hover_percent", 100 * physics.hover_share, "frames whose lowest point is above 4 cm over the stated ground");
+  add("hover_unexplained_percent", 100 * physics.unexplained_hover_share,
+      "of all frames, those that no flight explains");
+  add("lowest_point_mm", kMmPerMetre * physics.lowest_point_m, "median height of the lowest point of the surface");
+  add("ground_penetration_p95_mm", kMmPerMetre * physics.penetration_p95_m,
+      "95th percentile of its depth below the ground");
+  add("ground_penetration_percent", 100 * physics.penetration_share, "frames in which it is below 2 cm");
+  add("contact_slide_mps", physics.contact_slide_mps, "median speed along the ground of what touches it, m/s");
+}
+
+}  // namespace bodyloom

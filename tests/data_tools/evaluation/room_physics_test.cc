@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/evaluation/room_physics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "data_tools/body/builtin_body.h"
+#include "geometry/body/posed_body.h"
+
+namespace bodyloom::room_physics_test {
+namespace {
+
+constexpr double kFps = 50;
+
+/// The built-in body as it was made, seen by a level camera 1.5 m above the ground, its lowest vertex `height` metres
+/// over the ground and `along` metres to the right in each frame.
+Track Placed(const std::vector<double>& height, const std::vector<double>& along = {}) {
+  const BodyModel& body = BuiltinBody();
+  const auto T = static_cast<Eigen::Index>(height.size());
+  Track track;
+  track.camera = MakePinhole(1280, 720, 1000);
+  track.world = WorldOverGround(Eigen::Vector3d(0, -1, 0), 1.5);
+  track.motion.body = body.name();
+  track.motion.up = Motion::Up::kCamera;
+  track.motion.betas = Eigen::VectorXd::Zero(body.num_betas());
+  track.motion.poses.setZero(T, 3 * body.num_joints());
+  track.motion.poses.col(0).setConstant(M_PI);  // upright in a camera whose y is down
+  track.motion.trans.setZero(T, 3);
+  BodyPose pose = PoseFromAxisAngle(body, track.motion.poses.row(0).transpose(), Eigen::Vector3d(0, 0, 4));
+  const double lowest = PoseVertices(body, track.motion.betas, pose).col(1).maxCoeff();
+  for (Eigen::Index t = 0; t < T; ++t) {
+    track.motion.trans.row(t) << (along.empty() ? 0 : along[t]), 1.5 - lowest - height[t], 4;
+    track.motion.timestamps.push_back(t / kFps);
+    track.frame_status.push_back(FrameStatus::kTracked);
+  }
+  return track;
+}
+
+TEST(RoomPhysics, WhoStandsOnTheGroundDoesNothingWrong) {
+  const RoomPhysics physics = MeasureRoomPhysics(Placed(std::vector<double>(100, 0.0)), BuiltinBody());
+  EXPECT_EQ(physics.frames, 100);
+  EXPECT_EQ(physics.hover_share, 0);
+  EXPECT_EQ(physics.unexplained_hover_share, 0);
+  EXPECT_NEAR(physics.lowest_point_m, 0, 1e-5);
+  EXPECT_NEAR(physics.penetration_p95_m, 0, 1e-5);
+  EXPECT_NEAR(physics.contact_slide_mps, 0, 1e-5);
+  EXPECT_EQ(physics.BriefReport(),
+            "on the ground or in flight in 100 % of the frames, within 0 mm below it in 95 %, contacts slide 0.00 m/s");
+}
+
+TEST(RoomPhysics, HoveringAndPenetrationAreHeights) {
+  std::vector<double> heights(100, 0.1);
+  for (int t = 0; t < 40; ++t) heights[t] = -0.03;
+  const RoomPhysics physics = MeasureRoomPhysics(Placed(heights), BuiltinBody());
+  EXPECT_NEAR(physics.hover_share, 0.6, 1e-12);
+  EXPECT_NEAR(physics.penetration_share, 0.4, 1e-12);
+  EXPECT_NEAR(physics.penetration_p95_m, 0.03, 1e-5);
+  EXPECT_NEAR(physics.lowest_point_m, 0.1, 1e-5);
+  // Over 1.2 s a flight may rise by 1.8 m, so only the frames beside its ends are too high for one.
+  EXPECT_NEAR(physics.unexplained_hover_share, 0.02, 0.011);
+}
+
+TEST(RoomPhysics, AJumpIsAFlight) {
+  // A jump of 0.5 s and 31 cm between two stands, and a body that stays 20 cm up for as long as 0.2 s.
+  std::vector<double> heights;
+  for (int t = 0; t < 150; ++t) {
+    const double s = t / kFps;
+    heights.push_back(s > 1 && s < 1.5 ? 0.5 * 9.81 * (s - 1) * (1.5 - s) : s > 2 && s < 2.2 ? 0.2 : 0);
+  }
+  const RoomPhysics physics = MeasureRoomPhysics(Placed(heights), BuiltinBody());
+  EXPECT_NEAR(physics.hover_share * 150, 24 - 2 + 9, 2.1) << "the flight's first and last centimetres are contact";
+  EXPECT_NEAR(physics.unexplained_hover_share * 150, 9, 0.1) << "0.2 s lift by 5 cm at most";
+  for (double& height : heights) height *= 1.5;  // no body falls that fast
+  EXPECT_GT(MeasureRoomPhysics(Placed(heights), BuiltinBody()).unexplained_hover_share, 20.0 / 150);
+}
+
+TEST(RoomPhysics, AClipThatHoversThroughoutHasNoFlight) {
+  EXPECT_GT(MeasureRoomPhysics(Placed(std::vector<double>(20, 0.3)), BuiltinBody()).unexplained_hover_share, 0.5);
+}
+
+TEST(RoomPhysics, SlidingIsTheSpeedOfWhatTouches) {
+  std::vector<double> along;
+  for (int t = 0; t < 50; ++t) along.push_back(0.4 * t / kFps);
+  EXPECT_NEAR(MeasureRoomPhysics(Placed(std::vector<double>(50, 0.0), along), BuiltinBody()).contact_slide_mps, 0.4,
+              1e-4);
+  EXPECT_TRUE(
+      std::isnan(MeasureRoomPhysics(Placed(std::vector<double>(50, 0.5), along), BuiltinBody()).contact_slide_mps));
+}
+
+TEST(RoomPhysics, LostFramesAreLeftOutAndNeedsAWorld) {
+  Track track = Placed(std::vector<double>(30, 0.0));
+  track.motion.poses.row(4).setConstant(std::nan(""));
+  for (const int threads : {1, 3}) EXPECT_EQ(MeasureRoomPhysics(track, BuiltinBody(), threads).frames, 29);
+  track.motion.poses.setConstant(std::nan(""));
+  EXPECT_TRUE(std::isnan(MeasureRoomPhysics(track, BuiltinBody()).hover_share));
+  EXPECT_EQ(MeasureRoomPhysics(track, BuiltinBody()).BriefReport(), "");
+  track.world.reset();
+  EXPECT_THROW(MeasureRoomPhysics(track, BuiltinBody()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bodyloom::room_physics_test
