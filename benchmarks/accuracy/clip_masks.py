@@ -76,7 +76,7 @@ def main():
             told = json.loads(report.read_text(encoding="utf-8"))
             iou, minimum, missing, beside = score(masks(mask) > 0, truth)
             name = kind if kind == "network" or told["masks_cut"] else "left as they are"
-            lines.append(f"| {garment}, {motion.split('/')[-1]} | {name} | {iou:.4f} | {least:.3f} | {100 * missing:.2f} % | {100 * beside:.2f} % | "
+            lines.append(f"| {garment}, {motion.split('/')[-1]} | {name} | {iou:.4f} | {minimum:.3f} | {100 * missing:.2f} % | {100 * beside:.2f} % | "
                          f"{told['total_seconds']:.1f} |")
             print(lines[-1], flush=True)
     (o.out / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -129,7 +129,7 @@ def report(o):
         edges = [s["by_similarity"] for (_, a, _), s in found.items() if a == share]
         if edges:
             lines.append(f"\nShare {share:g}: quarters from similarity " +
-                         ", ".join(f"{q['least_similarity']:.3f}" for q in edges[0]))
+                         ", ".join(f"{q['min_similarity']:.3f}" for q in edges[0]))
     (o.out / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     rows = [{"descriptor": d, "share": a, "seed": k, **{key: s[key] for key, _ in SCORES},
              "by_similarity": s["by_similarity"]} for (d, a, k), s in found.items()]

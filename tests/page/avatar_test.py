@@ -83,7 +83,7 @@ def main():
             mean, maximum = sum(errors) / len(errors), errors[len(errors) * 99 // 100]
             good = len(errors) > 1500 and mean < 1.5 and maximum < 12
             print(("yes  " if good else "NO   ") + f"frame {frame} is what the command draws: {len(errors) // 3} pixels, off by "
-                  f"{mean:.2f} levels, 99 % within {most:.0f}")
+                  f"{mean:.2f} levels, 99 % within {maximum:.0f}")
             faults += not good
         text = chromium("--dump-dom", page + "#frame=5")
         first = shown("#frame=5&plain")

@@ -41,7 +41,7 @@ class Arguments(unittest.TestCase):
         self.expect(ValueError, "keypoints: expected numbers of shape (17, 3), found shape (17, 2)",
                     tracker.push, 0.0, np.zeros((17, 2)))
         self.expect(ValueError, "background: expected shape (240, 320, 3), found shape (3, 4, 3)",
-                    bodyloom.Renderer(tracked()).picture, 0, background=np.zeros((3, 4, 3), np.uint8))
+                    bodyloom.Renderer(tracked()).image, 0, background=np.zeros((3, 4, 3), np.uint8))
 
     def test_arrays_by_type(self):
         self.expect(TypeError, "points: expected numbers of shape (T, 17, 3), found complex128",
@@ -50,7 +50,7 @@ class Arguments(unittest.TestCase):
         self.expect(TypeError, "points: expected numbers of shape (T, 17, 3), found list that makes no array",
                     bodyloom.Keypoints, [[1, 2], [3]])
         self.expect(TypeError, "background: expected uint8 of shape (H, W, 3) (red, green, blue), found float64",
-                    bodyloom.Renderer(tracked()).picture, 0, background=np.zeros((240, 320, 3)))
+                    bodyloom.Renderer(tracked()).image, 0, background=np.zeros((240, 320, 3)))
         frames = bodyloom.DescriptorFrames(tracked(), size=16, past=0)
         self.expect(TypeError,
                     "out: expected a writable float32 array of shape (3, 16, 16) in C order, found another kind of array",
@@ -69,7 +69,7 @@ class Arguments(unittest.TestCase):
         self.expect(ValueError, "expected focal_px or K, and not both", bodyloom.Camera, 640, 480)
         self.expect(ValueError, "focal_px: expected pixels above 0, found -5", bodyloom.Camera, 640, 480, focal_px=-5)
         self.expect(ValueError, "expected camera or image_size, and not both", bodyloom.LiveTracker)
-        self.expect(ValueError, "frame 40 is outside the track's 40 frames", bodyloom.Renderer(tracked()).picture, 40)
+        self.expect(ValueError, "frame 40 is outside the track's 40 frames", bodyloom.Renderer(tracked()).image, 40)
         self.expect(ValueError, "frame -1 is outside the track's 40 frames", tracked().camera_at, -1)
         self.expect(ValueError, "frames: expected (begin, end) within (0, 40), found (5, 50)",
                     bodyloom.render, tracked(), (5, 50))
