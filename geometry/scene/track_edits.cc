@@ -166,6 +166,23 @@ std::vector<int> FrozenAt(int num_frames, int frame, int count) {
   return shown;
 }
 
+std::pair<int, int> PosedSpan(const Motion& motion) {
+  int begin = 0, end = motion.num_frames();
+  while (begin < end && !motion.HasPose(begin)) ++begin;
+  while (end > begin && !motion.HasPose(end - 1)) --end;
+  return begin == end ? std::pair(0, 0) : std::pair(begin, end);
+}
+
+Motion FramesOfMotion(const Motion& motion, int begin, int end) {
+  BODYLOOM_CHECK(begin >= 0 && begin <= end && end <= motion.num_frames(), "frames ", begin, " to ", end,
+                 " of a motion of ", motion.num_frames());
+  Motion part = motion;
+  part.poses = motion.poses.middleRows(begin, end - begin);
+  part.trans = motion.trans.middleRows(begin, end - begin);
+  part.timestamps.assign(motion.timestamps.begin() + begin, motion.timestamps.begin() + end);
+  return part;
+}
+
 Track FramesInOrder(const Track& track, std::span<const int> frames) {
   const int T = static_cast<int>(frames.size()), last = track.num_frames() - 1;
   const std::vector<double>& times = track.motion.timestamps;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Edits of tracks: transfer to another shape or to a baked body, and frozen frames.
+/// Edits of tracks: transfer to another shape or to a baked body, a span of frames, and frozen frames.
 #pragma once
 
 #include <Eigen/Core>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/body/body_model.h"
@@ -56,6 +57,12 @@ BodyModelData BakeShape(const BodyModel& body, const Eigen::VectorXd& betas, std
 
 /// The track for the baked body: β = 0, and without joints, which were the bare body's.
 Track OfBakedBody(Track track);
+
+/// The frames of a motion from the first with a pose to the last with one: [first, second). {0, 0} if none has a pose.
+std::pair<int, int> PosedSpan(const Motion& motion);
+
+/// The frames [begin, end) of a motion. Throws std::invalid_argument for frames out of range.
+Motion FramesOfMotion(const Motion& motion, int begin, int end);
 
 // Frozen frames: time stops while the camera keeps moving ("bullet time").
 

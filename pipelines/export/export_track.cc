@@ -22,6 +22,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/stopwatch.h"
 #include "geometry/scene/track.h"
+#include "geometry/scene/track_edits.h"
 #include "pipelines/files.h"
 #include "render/view/floor.h"
 #include "render/view/follow_view.h"
@@ -183,15 +184,21 @@ ExportInputs CheckedInputs(const ExportTrackRequest& request, const BodyModel& b
   return inputs;
 }
 
-/// BVH and AMASS have a pose in every frame.
-void RequireEveryFrame(const ExportInputs& inputs, const ExportTrackRequest& request) {
-  const Track& track = inputs.track();
-  for (int t = 0; t < track.num_frames(); ++t) {
-    if (track.motion.HasPose(t)) continue;
+/// BVH and AMASS have a pose in every frame: frames before the first sight and after the last are left out, and one
+/// that is lost between them has no place.
+Motion MotionOfEveryFrame(const ExportInputs& inputs, const ExportTrackRequest& request, ExportTrackReport* report) {
+  const Motion motion = inputs.MotionOfTrack();
+  const auto [begin, end] = PosedSpan(motion);
+  if (begin == end) throw std::runtime_error(request.tracks[0] + ": every frame is lost, there is nothing to write");
+  for (int t = begin; t < end; ++t) {
+    if (motion.HasPose(t)) continue;
     throw std::runtime_error(Concatenate(request.tracks[0], ": frame ", t, " is lost, which ",
                                          TrackFormNames()[size_t(request.form)],
                                          " cannot say; glb, trc and c3d leave it out"));
   }
+  report->lost_before = begin;
+  report->lost_after = motion.num_frames() - end;
+  return FramesOfMotion(motion, begin, end);
 }
 
 GlbSummary ExportGlb(const ExportInputs& inputs, const ExportTrackRequest& request) {
@@ -216,17 +223,14 @@ void Write(const ExportInputs& inputs, const ExportTrackRequest& request, const 
     case TrackForm::kObj:
       return ExportObj(inputs, request, callbacks);
     case TrackForm::kAmass:
-      RequireEveryFrame(inputs, request);
-      return WriteAmass(request.out, inputs.MotionOfTrack(), pelvis);
+      return WriteAmass(request.out, MotionOfEveryFrame(inputs, request, report), pelvis);
     case TrackForm::kBvh:
-      RequireEveryFrame(inputs, request);
-      return WriteBvh(request.out, inputs.MotionOfTrack(), *inputs.body, request.rig);
+      return WriteBvh(request.out, MotionOfEveryFrame(inputs, request, report), *inputs.body, request.rig);
     case TrackForm::kGlb:
       report->glb = ExportGlb(inputs, request);
       return;
     case TrackForm::kSmplx:
-      RequireEveryFrame(inputs, request);
-      return WriteAmassSmplx(request.out, inputs.MotionOfTrack(), pelvis);
+      return WriteAmassSmplx(request.out, MotionOfEveryFrame(inputs, request, report), pelvis);
     case TrackForm::kTrc:
     case TrackForm::kC3d: {
       const ExportScene scene = inputs.Scene();
@@ -292,6 +296,10 @@ TrackForm TrackFormFromString(const std::string& name) {
 std::string ToText(const ExportTrackReport& report) {
   std::string text;
   if (report.uses_world) text += "world    " + report.world.BriefReport() + "\n";
+  if (report.lost_before + report.lost_after > 0) {
+    text += Concatenate("left out ", report.lost_before, " frames before the first and ", report.lost_after,
+                        " after the last that show the person\n");
+  }
   if (report.glb.bytes > 0) {
     char line[160];
     std::snprintf(line, sizeof line,

@@ -15,6 +15,7 @@
 #include "data_tools/video/video_encoder.h"
 #include "geometry/base/check.h"
 #include "geometry/scene/camera_path.h"
+#include "geometry/scene/track_edits.h"
 #include "pipelines/page/clip_page.h"
 #include "pipelines/video/track_video.h"
 #include "render/image/image.h"
@@ -164,10 +165,12 @@ Seen SeenIn(const ClipPageRequest& request, const std::vector<double>& moments, 
 
 /// Empty where BVH cannot say what the track says.
 std::string BvhOf(const PersonOnPage& person, const WorldFrame& world) {
-  const Motion& motion = person.track->motion;
+  const auto [begin, end] = PosedSpan(person.track->motion);
+  const Motion motion = FramesOfMotion(person.track->motion, begin, end);
   for (int t = 0; t < motion.num_frames(); ++t) {
     if (!motion.HasPose(t)) return "";
   }
+  if (begin == end) return "";
   try {
     return BvhText(MotionInWorld(world, person.body->RestJoints(motion.betas).row(0).transpose(), motion),
                    *person.body);

@@ -82,6 +82,30 @@ TEST(TrackSequence, MissingFramesAreCarriedAndSaidToBeUncertain) {
   EXPECT_GT(result.track.joint_sigma(19, wrist), 1.5 * result.track.joint_sigma(5, wrist));
 }
 
+TEST(TrackSequence, FramesBeforeTheFirstAndAfterTheLastSightAreLost) {
+  SynthClip clip = Clip(40, 0);
+  const auto hide = [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) {
+      for (int k = 0; k < clip.keypoints.num_points(); ++k) clip.keypoints.at(t, k).confidence = 0;
+    }
+  };
+  hide(0, 6);
+  hide(20, 23);
+  hide(33, 40);
+  const TrackSequenceResult result = TrackClip(clip, CameraKnowledge::kKnown);
+  ASSERT_TRUE(result.summary.IsUsable());
+  EXPECT_EQ(result.summary.frames_by_status.at("lost"), 13);
+  EXPECT_EQ(result.summary.frames_by_status.at("interpolated"), 3);
+  EXPECT_EQ(result.summary.frames_by_status.at("tracked"), 24);
+  for (int t = 0; t < 40; ++t) {
+    const bool lost = t < 6 || t >= 33;
+    EXPECT_EQ(result.track.frame_status[t] == FrameStatus::kLost, lost) << t;
+    EXPECT_EQ(result.track.HasResult(t), !lost) << t;
+    EXPECT_EQ(result.track.coco17[t].allFinite(), !lost) << t;
+    EXPECT_EQ(result.track.joint_sigma.row(t).array().isNaN().all(), lost) << t;
+  }
+}
+
 TEST(TrackSequence, OneFrameAndNoPerson) {
   const SynthClip one = Clip(1, 0);
   EXPECT_TRUE(TrackClip(one, CameraKnowledge::kKnown).summary.IsUsable());

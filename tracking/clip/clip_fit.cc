@@ -311,6 +311,7 @@ void ClipFit::FinishWithCeres() {
 
 void ClipFit::Finish(TrackSequenceResult* result) {
   FillTrack(input_, problem_, landmarks_, result);
+  LoseUnseenEnds(problem_, result);
   FrameResiduals residuals;
   SummariseCosts(problem_, threads_, &residuals, &summary_);
   SummariseImageTerms(problem_, residuals, &summary_);
@@ -334,6 +335,7 @@ void ClipFit::FillJointSigma(Track* track) {
   };
   for (size_t i = 0, t = 0; t < num_frames(); ++t) {
     while (i + 1 < coarse_frames_.size() && distance(i + 1, t) <= distance(i, t)) ++i;
+    if (track->frame_status[t] == FrameStatus::kLost) continue;
     track->joint_sigma.row(t) = sigma.joints.row(i);
     track->root_sigma[t] = sigma.hips[i];
   }

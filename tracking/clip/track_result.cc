@@ -11,7 +11,9 @@
 #include "tracking/problem/body_points.h"
 #include "tracking/problem/frame_cost.h"
 #include "tracking/problem/moving_camera.h"
+#include "tracking/problem/user_cost.h"
 #include "tracking/terms/dense/dense.h"
+#include "tracking/terms/initialiser.h"
 #include "tracking/terms/part_labels/part_label_term.h"
 #include "tracking/terms/rendered_uv/rendered_uv_term.h"
 
@@ -115,6 +117,35 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
   summary.dense_median_px = dense.median_px;
   if (input.keypoints != nullptr) summary.terms.push_back(joints);
   if (input.dense != nullptr) summary.terms.push_back(dense);
+}
+
+void LoseUnseenEnds(const SequenceProblem& problem, TrackSequenceResult* result) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  Track& track = result->track;
+  const std::vector<int> shots = ShotOfFrames(problem.cut_before);
+  const auto is_held = [&](int t) {
+    const FrameData& frame = problem.frames[t];
+    return track.frame_status[t] == FrameStatus::kTracked || track.frame_status[t] == FrameStatus::kWeak ||
+           frame.Get<InitialiserTerm>().num_rows() > 0 || !frame.Get<UserCostTerm>().is_empty();
+  };
+  const int T = track.num_frames();
+  for (int begin = 0, end = 0; begin < T; begin = end) {
+    while (end < T && shots[end] == shots[begin]) ++end;
+    int first = begin, last = end;
+    while (first < end && !is_held(first)) ++first;
+    while (last > first && !is_held(last - 1)) --last;
+    for (int t = begin; t < end; ++t) {
+      if ((t >= first && t < last) || track.frame_status[t] == FrameStatus::kLost) continue;
+      --result->summary.frames_by_status[ToString(track.frame_status[t])];
+      ++result->summary.frames_by_status[ToString(FrameStatus::kLost)];
+      track.frame_status[t] = FrameStatus::kLost;
+      track.motion.poses.row(t).setConstant(kNaN);
+      track.motion.trans.row(t).setConstant(kNaN);
+      if (track.weak_camera.rows() > 0) track.weak_camera.row(t).setConstant(kNaN);
+      track.joints[t].setConstant(kNaN);
+      track.coco17[t].setConstant(kNaN);
+    }
+  }
 }
 
 void SummariseImageTerms(const SequenceProblem& problem, const FrameResiduals& residuals,

@@ -21,6 +21,26 @@ TEST(FreezeTrack, ShowsOneFrameLonger) {
   EXPECT_THROW(FrozenAt(4, 0, -1), std::invalid_argument);
 }
 
+TEST(PosedSpan, GoesFromTheFirstPoseToTheLast) {
+  Motion motion = ShortTrack().motion;
+  const int T = motion.num_frames();
+  EXPECT_EQ(PosedSpan(motion), std::pair(0, T));
+  motion.poses.row(0).setConstant(NAN);
+  motion.trans.row(2).setConstant(NAN);  // a hole
+  motion.poses.row(T - 1).setConstant(NAN);
+  EXPECT_EQ(PosedSpan(motion), std::pair(1, T - 1));
+  const Motion part = FramesOfMotion(motion, 1, T - 1);
+  ASSERT_EQ(part.num_frames(), T - 2);
+  EXPECT_EQ(part.poses.row(0), motion.poses.row(1));
+  EXPECT_EQ(part.trans.row(T - 3), motion.trans.row(T - 2));
+  EXPECT_EQ(part.timestamps.front(), motion.timestamps[1]);
+  EXPECT_EQ(part.betas, motion.betas);
+  motion.poses.setConstant(NAN);
+  EXPECT_EQ(PosedSpan(motion), std::pair(0, 0));
+  EXPECT_THROW(FramesOfMotion(motion, 2, 1), std::invalid_argument);
+  EXPECT_THROW(FramesOfMotion(motion, 0, T + 1), std::invalid_argument);
+}
+
 TEST(FreezeTrack, TheClockGoesOn) {
   const Track track = ShortTrack();
   const Track shown = FramesInOrder(track, FrozenAt(track.num_frames(), 2, 3));

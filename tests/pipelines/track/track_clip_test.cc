@@ -59,6 +59,47 @@ TEST(TrackClip, ReportsWhatItWroteAndHowFarItIs) {
   EXPECT_TRUE(std::filesystem::exists(request.out));
 }
 
+TEST(TrackClip, LostEndsAreLeftOutOfFormsThatNeedEveryFrame) {
+  const ScratchFolder folder;
+  const TrackRequest request = RequestFor(SmallClip(folder), folder);
+  TrackClip(request);
+  Track track = ReadTrack(request.out);
+  const auto lose = [&](int t) {
+    track.frame_status[t] = FrameStatus::kLost;
+    track.motion.poses.row(t).setConstant(NAN);
+    track.motion.trans.row(t).setConstant(NAN);
+    track.joints[t].setConstant(NAN);
+    track.coco17[t].setConstant(NAN);
+  };
+  for (const int t : {0, 1, 7}) lose(t);
+  WriteTrack(request.out, track);
+  ExportTrackRequest amass;
+  amass.tracks = {request.out};
+  amass.form = TrackForm::kAmass;
+  amass.out = folder / "amass.npz";
+  const ExportTrackReport report = ExportTrack(amass);
+  EXPECT_EQ(report.lost_before, 2);
+  EXPECT_EQ(report.lost_after, 1);
+  EXPECT_THAT(ToText(report), testing::HasSubstr("left out 2 frames before the first and 1 after the last"));
+  EXPECT_EQ(ReadNpz(amass.out).at("poses").shape[0], 5);
+  amass.form = TrackForm::kBvh;
+  amass.out = folder / "a.bvh";
+  ExportTrack(amass);
+  EXPECT_THAT(FileBytes(amass.out), testing::HasSubstr("Frames: 5"));
+  lose(4);
+  WriteTrack(request.out, track);
+  EXPECT_THROW(
+      {
+        try {
+          ExportTrack(amass);
+        } catch (const std::runtime_error& error) {
+          EXPECT_THAT(error.what(), testing::HasSubstr("frame 4 is lost, which bvh cannot say"));
+          throw;
+        }
+      },
+      std::runtime_error);
+}
+
 TEST(TrackClip, FollowsACameraThatMovesFromTheFilesToTheFiles) {
   const ScratchFolder folder;
   SynthesizeClipRequest synth;
