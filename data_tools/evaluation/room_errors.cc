@@ -12,6 +12,7 @@
 #include "geometry/base/units.h"
 #include "geometry/math/procrustes.h"
 #include "geometry/math/rotation.h"
+#include "tracking/initialise/ground_plane.h"
 
 namespace bodyloom {
 
@@ -21,7 +22,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr int kWindow = 100, kFirstFrames = 2;
-constexpr double kAnkleM = 0.08, kStandingAnkleMps = 0.1;
+constexpr double kStandingAnkleMps = 0.1;
 
 struct Bone {
   const char* name;
@@ -184,7 +185,7 @@ void MeasureLegs(const Compared& both, RoomErrors* errors) {
   double height = 0, knee = 0, knee_bias = 0, slide = 0;
   int standing = 0;
   for (size_t t = 0; t < T; ++t) {
-    differences.push_back(LowerAnkle(both.track[t]) - kAnkleM - (true_heights[t] - floor));
+    differences.push_back(LowerAnkle(both.track[t]) - kAnkleHeight - (true_heights[t] - floor));
     height += std::abs(differences.back());
     for (const int side : {0, 1}) {
       const double difference = KneeFlexionDeg(both.track[t], side) - KneeFlexionDeg(both.truth[t], side);

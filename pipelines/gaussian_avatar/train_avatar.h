@@ -44,7 +44,7 @@ struct TrainAvatarSummary {
   int64_t steps = 0;
   int64_t cooldown_step = 0;    ///< first step of the cool-down of early stopping; 0: not stopped early
   int64_t best_step = 0;        ///< step with the best validation score, whose state is kept; 0: no validation
-  double training_seconds = 0;  ///< in steps, over all sessions
+  double training_seconds = 0;  ///< in steps, with those of the training it continues
   int gaussians = 0, loose = 0, cloth = 0;
   double garment_length_m = 0;                       ///< of the garment found; 0: none
   double loss = 0;                                   ///< mean of the last 100 steps
@@ -52,7 +52,7 @@ struct TrainAvatarSummary {
   /// Scores of the same held-out frames in poses refined on their own images: how well the avatar fits them, not how
   /// well a track predicts them.
   std::optional<AvatarScores> validation_refined;
-  StageSeconds seconds;  ///< of this session
+  StageSeconds seconds;  ///< of this call, not of the training it continues
   std::vector<std::string> written;
 };
 

@@ -82,14 +82,16 @@ Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track
                            "one of them, or a track file");
 }
 
-/// Adds the self-penetration of the tracked body and of the true one.
-void AddSelfPenetrationOf(const Track& track, const std::optional<Motion>& true_motion, const BodyModel& body,
-                          const PipelineCallbacks& callbacks, Evaluation* evaluation) {
+/// Measures the surface of the tracked body: in the world that the track states, and its self-penetration beside that
+/// of the true one.
+void AddSurfaceMeasures(const Track& track, const std::optional<Motion>& true_motion, const BodyModel& body,
+                        const PipelineCallbacks& callbacks, Evaluation* evaluation) {
   if (track.motion.poses.cols() > 3 * body.num_joints() || track.motion.betas.size() > body.num_betas()) {
     callbacks.Message("self-penetration is left out: the track is not of the body '" + body.name() +
                       "'; give the track's own with --body");
     return;
   }
+  if (track.world) AddRoomPhysics(MeasureRoomPhysics(track, body, ThreadsFor(0)), evaluation);
   SelfPenetrationOptions options;
   options.num_threads = ThreadsFor(0);
   const auto add = [&](const Motion& motion, const char* prefix) {
@@ -99,12 +101,6 @@ void AddSelfPenetrationOf(const Track& track, const std::optional<Motion>& true_
   };
   add(track.motion, "");
   if (true_motion) add(*true_motion, "gt_");
-}
-
-/// Measures the tracked body in the world that the track states.
-void AddRoomPhysicsOf(const Track& track, const BodyModel& body, Evaluation* evaluation) {
-  const bool fits = track.motion.poses.cols() <= 3 * body.num_joints() && track.motion.betas.size() <= body.num_betas();
-  if (track.world && fits) AddRoomPhysics(MeasureRoomPhysics(track, body, ThreadsFor(0)), evaluation);
 }
 
 /// Checks the request and its files, except the track and the body. `truth`: given in memory.
@@ -130,8 +126,7 @@ Evaluation EvaluateChecked(const EvaluateTrackRequest& request, const BodyModel&
   if (truth != nullptr) true_motion = truth->motion;
   Evaluation evaluation = truth != nullptr ? EvaluateAgainstTrack(track, *truth, body)
                                            : EvaluateAgainstFiles(request, track, body, &true_motion);
-  AddRoomPhysicsOf(track, body, &evaluation);
-  AddSelfPenetrationOf(track, true_motion, body, callbacks, &evaluation);
+  AddSurfaceMeasures(track, true_motion, body, callbacks, &evaluation);
   if (!request.json.empty()) {
     WriteFileAtomically(request.json, EvaluationJson(evaluation));
   }

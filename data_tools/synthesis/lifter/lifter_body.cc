@@ -23,7 +23,7 @@ struct Ball {
   int index;
   float radius;
 };
-constexpr float kSole = -1;  // placeholder for the distance to the sole, which depends on the body
+constexpr float kSole = -1;  // marks a radius that is the distance to the sole, which depends on the body
 constexpr Ball kBalls[LifterBody::kNumBalls] = {
     {Ball::kLandmark, kLifterLeftBigToe, kSole},
     {Ball::kLandmark, kLifterLeftBigToe + 1, kSole},
