@@ -2,7 +2,9 @@
 #include "data_tools/evaluation/room_physics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 #include <vector>
@@ -11,6 +13,8 @@
 #include "geometry/base/check.h"
 #include "geometry/base/percentile.h"
 #include "geometry/base/units.h"
+#include "geometry/body/balance.h"
+#include "geometry/body/centre_of_mass.h"
 #include "geometry/body/posed_body.h"
 #include "geometry/body/skinning.h"
 
@@ -21,14 +25,46 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kContactM = 0.04, kTouchingM = 0.02, kPenetrationM = 0.02, kGravity = 9.81;
+constexpr double kContactM = 0.04, kTouchingM = 0.02, kPenetrationM = 0.02;
+constexpr double kStandingKneeM = 0.25;  // who kneels has them below half a shank
 constexpr int kFramesAtOnce = 64;
 
-/// Heights and slides of the frames that have a result, frame by frame.
+/// Parts of the surface, by the joint with the largest skinning weight.
+enum class SurfacePart : uint8_t { kLeftFoot, kRightFoot, kLeg, kAbove };
+
+std::vector<SurfacePart> PartsOf(const BodyModel& body) {
+  std::vector<SurfacePart> of_joint(static_cast<size_t>(body.num_joints()), SurfacePart::kAbove);
+  const std::pair<const char*, SurfacePart> named[] = {
+      {"l_hip", SurfacePart::kLeg},         {"r_hip", SurfacePart::kLeg},        {"l_knee", SurfacePart::kLeg},
+      {"r_knee", SurfacePart::kLeg},        {"l_ankle", SurfacePart::kLeftFoot}, {"l_foot", SurfacePart::kLeftFoot},
+      {"r_ankle", SurfacePart::kRightFoot}, {"r_foot", SurfacePart::kRightFoot}};
+  for (const auto& [name, part] : named) {
+    const int joint = body.FindJoint(name);
+    if (joint >= 0) of_joint[static_cast<size_t>(joint)] = part;
+  }
+  std::vector<SurfacePart> parts(static_cast<size_t>(body.num_vertices()));
+  for (int v = 0; v < body.num_vertices(); ++v) {
+    const int begin = body.influence_begin()[v], end = body.influence_begin()[v + 1];
+    int heaviest = begin;
+    for (int k = begin; k < end; ++k) {
+      if (body.influence_weight()[k] > body.influence_weight()[heaviest]) heaviest = k;
+    }
+    parts[static_cast<size_t>(v)] = of_joint[static_cast<size_t>(body.influence_joint()[heaviest])];
+  }
+  return parts;
+}
+
+/// Heights, slides and supports of the frames that have a result, frame by frame.
 class Surface {
  public:
   Surface(const Track& track, const BodyModel& body, int num_threads)
-      : track_(track), body_(body), skinner_(body, OptionsFor(num_threads)) {
+      : track_(track),
+        body_(body),
+        skinner_(body, OptionsFor(num_threads)),
+        parts_(PartsOf(body)),
+        mass_(MassByJoint(body)),
+        knees_{body.FindJoint("l_knee"), body.FindJoint("r_knee")},
+        neck_(body.FindJoint("neck")) {
     for (int t = 0; t < track.num_frames(); ++t) {
       if (track.HasResult(t)) frames_.push_back(t);
     }
@@ -49,13 +85,19 @@ class Surface {
       }
       vertices.resize(size * poses.size());
       skinner_.Skin(shaped, poses, vertices);
-      for (size_t i = 0; i < poses.size(); ++i)
+      for (size_t i = 0; i < poses.size(); ++i) {
         Add(begin + i, Eigen::Map<const MatrixX3d>(&vertices[size * i], body_.num_vertices(), 3));
+        if (mass_.size() > 0) AddSupport(begin + i, PoseSkeleton(body_, shaped.rest_joints, poses[i]).joints);
+      }
     }
   }
 
   [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
   [[nodiscard]] const std::vector<double>& slides() const { return slides_; }
+  /// One for each frame; none where the body lacks a joint that its centre of mass needs.
+  [[nodiscard]] const std::vector<SupportedFrame>& supports() const { return supports_; }
+  /// Angles of the trunk to the vertical in frames in which the person stands on both feet, degrees.
+  [[nodiscard]] const std::vector<double>& leans() const { return leans_; }
   [[nodiscard]] double SecondsAt(size_t i) const { return track_.motion.timestamps[frames_[i]]; }
   /// Frame i comes right after the one before it.
   [[nodiscard]] bool Continues(size_t i) const { return i > 0 && frames_[i] == frames_[i - 1] + 1; }
@@ -80,12 +122,36 @@ class Surface {
     }
     last_ = std::move(now);
   }
+  /// After Add() of the same frame.
+  void AddSupport(size_t i, const MatrixX3d& joints_in_camera) {
+    const MatrixX3d joints = track_.world->PointsFromCamera(joints_in_camera);
+    SupportedFrame frame{SecondsAt(i), CentreOfMass(joints, mass_), {}, Continues(i)};
+    std::array<bool, 4> touches{};
+    for (Eigen::Index v = 0; v < last_.rows(); ++v) {
+      if (last_(v, 1) > kContactM) continue;
+      frame.contacts.emplace_back(last_(v, 0), last_(v, 2));
+      touches[static_cast<size_t>(parts_[static_cast<size_t>(v)])] = true;
+    }
+    supports_.push_back(std::move(frame));
+    const auto touching = [&](SurfacePart part) { return touches[static_cast<size_t>(part)]; };
+    const bool stands = touching(SurfacePart::kLeftFoot) && touching(SurfacePart::kRightFoot) &&
+                        !touching(SurfacePart::kAbove) &&
+                        std::min(joints(knees_[0], 1), joints(knees_[1], 1)) > kStandingKneeM;
+    if (!stands) return;
+    const RowVector3d trunk = joints.row(neck_) - joints.row(0);
+    leans_.push_back(std::atan2(std::hypot(trunk.x(), trunk.z()), trunk.y()) / kDegree);
+  }
 
   const Track& track_;
   const BodyModel& body_;
   Skinner skinner_;
+  std::vector<SurfacePart> parts_;
+  Eigen::VectorXd mass_;  ///< by joint; empty: the body has other joints
+  std::array<int, 2> knees_;
+  int neck_;
   std::vector<int> frames_;
-  std::vector<double> heights_, slides_;
+  std::vector<double> heights_, slides_, leans_;
+  std::vector<SupportedFrame> supports_;
   MatrixX3d last_;
 };
 
@@ -124,6 +190,14 @@ std::string RoomPhysics::BriefReport() const {
     std::snprintf(text, sizeof(text), ", contacts slide %.2f m/s", contact_slide_mps);
     line += text;
   }
+  if (!std::isnan(balance_outside_share)) {
+    std::snprintf(text, sizeof(text), ", off balance in %.0f %% of the slow frames", 100 * balance_outside_share);
+    line += text;
+  }
+  if (!std::isnan(lean_median_deg)) {
+    std::snprintf(text, sizeof(text), ", leans %.0f deg on both feet", lean_median_deg);
+    line += text;
+  }
   return line;
 }
 
@@ -134,7 +208,11 @@ RoomPhysics MeasureRoomPhysics(const Track& track, const BodyModel& body, int nu
   const std::vector<double>& heights = surface.heights();
   RoomPhysics physics;
   physics.frames = static_cast<int>(heights.size());
-  physics.contact_slide_mps = surface.slides().empty() ? kNotMeasured : Percentile(surface.slides(), 50);
+  physics.contact_slide_mps = Percentile(surface.slides(), 50);
+  const Balance balance = MeasureBalance(surface.supports());
+  physics.balance_outside_share = balance.outside_share;
+  physics.balance_p95_m = balance.outside_p95_m;
+  physics.lean_median_deg = Percentile(surface.leans(), 50);
   if (heights.empty()) {
     physics.hover_share = physics.unexplained_hover_share = physics.lowest_point_m = kNotMeasured;
     physics.penetration_p95_m = physics.penetration_share = kNotMeasured;
@@ -172,6 +250,10 @@ void AddRoomPhysics(const RoomPhysics& physics, Evaluation* evaluation) {
       "95th percentile of its depth below the ground");
   add("ground_penetration_percent", 100 * physics.penetration_share, "frames in which it is below 2 cm");
   add("contact_slide_mps", physics.contact_slide_mps, "median speed along the ground of what touches it, m/s");
+  add("balance_outside_percent", 100 * physics.balance_outside_share,
+      "slow frames whose zero-moment point is 5 cm outside what supports the body");
+  add("balance_p95_mm", kMmPerMetre * physics.balance_p95_m, "95th percentile of how far it is outside");
+  add("lean_median_deg", physics.lean_median_deg, "median angle of the trunk to the vertical while on both feet");
 }
 
 }  // namespace bodyloom

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "data_tools/body/builtin_body.h"
+#include "geometry/base/units.h"
 #include "geometry/body/posed_body.h"
 
 namespace bodyloom::room_physics_test {
@@ -46,7 +47,35 @@ TEST(RoomPhysics, WhoStandsOnTheGroundDoesNothingWrong) {
   EXPECT_NEAR(physics.penetration_p95_m, 0, 1e-5);
   EXPECT_NEAR(physics.contact_slide_mps, 0, 1e-5);
   EXPECT_EQ(physics.BriefReport(),
-            "on the ground or in flight in 100 % of the frames, within 0 mm below it in 95 %, contacts slide 0.00 m/s");
+            "on the ground or in flight in 100 % of the frames, within 0 mm below it in 95 %, contacts slide 0.00 m/s, "
+            "off balance in 0 % of the slow frames, leans 3 deg on both feet");
+}
+
+TEST(RoomPhysics, WhoLeansIsOffBalance) {
+  // Turned about the toes' edge by 20° the centre of mass, about 1 m up, is some 30 cm ahead of where it was.
+  Track track = Placed(std::vector<double>(40, 0.0));
+  const RoomPhysics upright = MeasureRoomPhysics(track, BuiltinBody());
+  EXPECT_EQ(upright.balance_outside_share, 0);
+  EXPECT_NEAR(upright.balance_p95_m, 0, 0.01);
+  for (Eigen::Index t = 0; t < 40; ++t) {
+    track.motion.poses.row(t).head<3>() << M_PI - 20 * kDegree, 0, 0;
+    const BodyPose pose =
+        PoseFromAxisAngle(BuiltinBody(), track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+    const double lowest = PoseVertices(BuiltinBody(), track.motion.betas, pose).col(1).maxCoeff();
+    track.motion.trans(t, 1) += 1.5 - lowest;
+  }
+  const RoomPhysics leaning = MeasureRoomPhysics(track, BuiltinBody());
+  EXPECT_EQ(leaning.balance_outside_share, 1);
+  EXPECT_GT(leaning.balance_p95_m, 0.15);
+  EXPECT_LT(leaning.balance_p95_m, 0.4);
+  EXPECT_NEAR(leaning.lean_median_deg, upright.lean_median_deg + 20, 8) << "the trunk's own line is not vertical";
+}
+
+TEST(RoomPhysics, WhoTouchesNothingHasNeitherBalanceNorLean) {
+  const RoomPhysics physics = MeasureRoomPhysics(Placed(std::vector<double>(40, 0.3)), BuiltinBody());
+  EXPECT_TRUE(std::isnan(physics.balance_outside_share));
+  EXPECT_TRUE(std::isnan(physics.balance_p95_m));
+  EXPECT_TRUE(std::isnan(physics.lean_median_deg));
 }
 
 TEST(RoomPhysics, HoveringAndPenetrationAreHeights) {
