@@ -12,6 +12,7 @@
 #include "render/image/image.h"
 #include "render/image/image_mat.h"
 #include "render/raster/visibility_buffer.h"
+#include "render/view/drawing_units.h"
 #include "render/view/view_camera.h"
 
 namespace bodyloom {
@@ -40,6 +41,14 @@ std::optional<Floor> FloorUnder(const std::vector<MatrixX3d>& joints, const Vect
   return Floor{(lowest - 0.04) * up, up};
 }
 
+std::optional<Floor> FloorOfWorld(const Track& track) {
+  if (!track.world) return std::nullopt;
+  const WorldSource source = track.world->source;
+  if (source == WorldSource::kLevelCamera || source == WorldSource::kVertical) return std::nullopt;
+  const Vector3d up = track.world->up_in_camera();
+  return Floor{-track.world->camera_height_m() * up, up};
+}
+
 void DrawFloorGrid(const Floor& floor_in, const Vector3d& centre, const FloorGridStyle& style, const Camera& camera,
                    Image* image) {
   BODYLOOM_CHECK(style.spacing_m > 0 && style.radius_m > 0, "floor grid: spacing ", style.spacing_m, " m, radius ",
@@ -48,16 +57,15 @@ void DrawFloorGrid(const Floor& floor_in, const Vector3d& centre, const FloorGri
   Vector3d right, ahead;
   FloorAxes(floor, &right, &ahead);
   const Vector2d middle(right.dot(centre - floor.point), ahead.dot(centre - floor.point));
-  constexpr int kShift = 4, kPiecesPerCell = 4;
+  constexpr int kPiecesPerCell = 4;
   cv::Mat mask(image->height, image->width, CV_8UC1, cv::Scalar(0));
 
   const auto to_pixel = [&](const Vector2d& at, cv::Point* pixel) {
     Vector2d p;
     const Vector3d X = floor.point + at.x() * right + at.y() * ahead;
     if (camera.model == CameraModel::kPinhole && X.z() < 0.1) return false;
-    if (!camera.Project(X, &p) || p.cwiseAbs().maxCoeff() > 1e5) return false;
-    *pixel = {static_cast<int>(std::lround(p.x() * (1 << kShift))),
-              static_cast<int>(std::lround(p.y() * (1 << kShift)))};
+    if (!camera.Project(X, &p) || !IsDrawable(p)) return false;
+    *pixel = FixedPoint(p);
     return true;
   };
   const int reach = static_cast<int>(std::ceil(style.radius_m / style.spacing_m));
@@ -77,7 +85,7 @@ void DrawFloorGrid(const Floor& floor_in, const Vector3d& centre, const FloorGri
         cv::Point p, q;
         if (!to_pixel(a, &p) || !to_pixel(b, &q)) continue;
         const double fade = 1 - distance * distance;
-        cv::line(mask, p, q, 255 * fade * fade, thickness, cv::LINE_AA, kShift);
+        cv::line(mask, p, q, 255 * fade * fade, thickness, cv::LINE_AA, kDrawingShift);
       }
     }
   }
@@ -95,11 +103,11 @@ void DrawFloorGrid(const Floor& floor_in, const Vector3d& centre, const FloorGri
 }
 
 void DrawShadow(const MatrixX3d& vertices, const MatrixX3i& faces, const Floor& floor_in, const Camera& camera,
-                double strength, Image* image) {
+                double strength, Image* image, const Vector2d& slant) {
   const Floor floor{floor_in.point, floor_in.up.normalized()};
   Vector3d right, ahead;
   FloorAxes(floor, &right, &ahead);
-  const Vector3d fall = (-floor.up + 0.22 * right + 0.12 * ahead).normalized();  // the light comes from the upper left
+  const Vector3d fall = (-floor.up + slant.x() * right + slant.y() * ahead).normalized();
   MatrixX3d flat(vertices.rows(), 3);
   double height = 0;
   for (int v = 0; v < vertices.rows(); ++v) {

@@ -24,6 +24,10 @@ struct Floor {
 /// all frames (joints J×3, no rows where a frame is unknown). Empty when no frame is known.
 std::optional<Floor> FloorUnder(const std::vector<MatrixX3d>& joints, const Eigen::Vector3d& up);
 
+/// The ground of the track's world, in the track's frame, if it was found or given (WorldSource::kGround, kPeople,
+/// kGiven).
+std::optional<Floor> FloorOfWorld(const Track& track);
+
 struct FloorGridStyle {
   double spacing_m = 0.5;
   double radius_m = 3;  ///< lines fade out towards this distance from the centre
@@ -36,10 +40,11 @@ struct FloorGridStyle {
 void DrawFloorGrid(const Floor& floor, const Eigen::Vector3d& centre, const FloorGridStyle& style, const Camera& camera,
                    Image* image);
 
-/// Darkens the floor under a mesh (vertices in the camera frame), lit from above and a little from the side.
-/// `strength` in [0, 1].
+/// Darkens the floor under a mesh (vertices in the camera frame). `strength` in [0, 1]. `slant`: metres that the shadow
+/// of a point 1 m above the floor lies to the right of it and further from the camera; by default the light comes a
+/// little from the side, (0, 0) is from straight above.
 void DrawShadow(const MatrixX3d& vertices_in_camera, const MatrixX3i& faces, const Floor& floor, const Camera& camera,
-                double strength, Image* image);
+                double strength, Image* image, const Eigen::Vector2d& slant = {0.22, 0.12});
 
 // The world frame of tracks (geometry/scene/world_frame.h): from their files, or assumed.
 

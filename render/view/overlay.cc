@@ -87,11 +87,18 @@ OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, cons
   backdrop_ = StudioBackdrop(track.camera.width, track.camera.height);
   const std::vector<MatrixX3d> joints = TrackJoints(body, track);
   const std::vector<MatrixX3d> leaders = reference != nullptr ? TrackJoints(body, *reference) : joints;
-  floor_ = FloorUnder(leaders, options.up_in_camera);
+  floor_ = FloorOfWorld(track);
+  if (floor_) {
+    options_.up_in_camera = floor_->up;
+  } else {
+    floor_ = FloorUnder(leaders, options.up_in_camera);
+  }
   if (!options.side_view) return;
   BODYLOOM_CHECK(leaders.size() == joints.size(), "overlay: the track has ", joints.size(), " frames, its reference ",
                  leaders.size());
-  side_.emplace(leaders, track.motion.timestamps, options.SideView(track.camera.height), joints);
+  BODYLOOM_CHECK(floor_, "overlay: no frame of the track is known, there is nothing to see from the side");
+  side_.emplace(std::vector<SidePanelPerson>{{leaders, joints}}, track.motion.timestamps,
+                options_.SideView(track.camera.height), *floor_);
 }
 
 MeshStyle OverlayRenderer::Style(double alpha) const {
@@ -102,21 +109,20 @@ MeshStyle OverlayRenderer::Style(double alpha) const {
 }
 
 Image OverlayRenderer::Side(int frame) const {
-  const MatrixX3i& faces = body_.data().faces;
-  SidePanel::Picture panel = side_->At(frame, *floor_);
-  const auto draw = [&](const MatrixX3d& vertices_in_camera, const MeshStyle& style) {
-    if (vertices_in_camera.rows() == 0) return;
-    const MatrixX3d vertices = panel.view.Apply(vertices_in_camera);
-    DrawShadow(vertices, faces, panel.floor, panel.view.camera, 0.3, &panel.image);
-    drawer_.Draw(vertices, faces, panel.view.camera, style, &panel.image);
-  };
+  SidePanel::Picture panel = side_->At(0, frame);
+  const double caption_height = OverlayCaptionHeight(track_.camera.height);
   if (reference_ != nullptr) {
-    draw(TrackVertices(body_, *reference_, frame), {.colour = kReferenceColour,
-                                                    .samples = OverlaySamples(track_.camera.height),
-                                                    .num_threads = options_.num_threads});
+    DrawInPanel({.vertices = TrackVertices(body_, *reference_, frame),
+                 .faces = &body_.data().faces,
+                 .style = {.colour = kReferenceColour,
+                           .samples = OverlaySamples(track_.camera.height),
+                           .num_threads = options_.num_threads},
+                 .marks = false},
+                caption_height, &drawer_, &panel);
   }
   const double alpha = reference_ != nullptr ? options_.alpha : 1;
-  draw(TrackVertices(body_, track_, frame), Style(alpha));
+  DrawInPanel({.vertices = TrackVertices(body_, track_, frame), .faces = &body_.data().faces, .style = Style(alpha)},
+              caption_height, &drawer_, &panel);
   return std::move(panel.image);
 }
 
@@ -169,26 +175,6 @@ Image OverlayRenderer::Render(int frame, const OverlayFrame& what) const {
   }
   DrawCaption(legend, Corner::kBottomRight, caption_height, &panel);
   return Beside(view, panel);
-}
-
-SidePanel::SidePanel(const std::vector<MatrixX3d>& joints, const std::vector<double>& timestamps,
-                     const FollowViewOptions& options, const std::vector<MatrixX3d>& others)
-    : follow_(joints, timestamps, options, others), backdrop_(StudioBackdrop(options.width, options.height)) {}
-
-SidePanel::Picture SidePanel::At(int t, const Floor& floor) const {
-  const View view = follow_.At(t);
-  const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
-  const Eigen::Vector3d& translation = view.from_camera.camera_from_world_translation;
-  Picture rendered{view, {R * floor.point + translation, R * floor.up}, backdrop_};
-  DrawFloorGrid(rendered.floor, R * follow_.CentreAt(t) + translation, {}, view.camera, &rendered.image);
-  return rendered;
-}
-
-Image Beside(const Image& left, const Image& right) {
-  Image both(left.width + right.width, left.height);
-  Paste(left, 0, 0, &both);
-  Paste(right, left.width, 0, &both);
-  return both;
 }
 
 }  // namespace bodyloom

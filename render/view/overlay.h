@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Draws overlays to judge a track: the projected body over the video (or a plain backdrop), detected and projected
-/// landmarks, a caption, and optionally a side view, where errors in depth are visible. With a moving camera the
-/// overlay uses each frame's camera, the side view the scene frame.
+/// landmarks, a caption, and optionally a side view, where errors in depth, lean and height over the floor are visible.
+/// With a moving camera the overlay uses each frame's camera, the side view the scene frame.
 #pragma once
 
 #include <optional>
@@ -18,34 +18,9 @@
 #include "render/view/floor.h"
 #include "render/view/follow_view.h"
 #include "render/view/shaded_mesh.h"
-#include "render/view/view_camera.h"
+#include "render/view/side_panel.h"
 
 namespace bodyloom {
-
-class SidePanel {
- public:
-  /// Arguments of FollowView.
-  SidePanel(const std::vector<MatrixX3d>& joints, const std::vector<double>& timestamps,
-            const FollowViewOptions& options, const std::vector<MatrixX3d>& others = {});
-
-  /// Image with the floor's grid at one moment, and its view.
-  struct Picture {
-    View view;
-    Floor floor;  ///< in the view's camera
-    Image image;
-  };
-  /// The panel at frame t of the joints; `floor` in the frame of the joints.
-  [[nodiscard]] Picture At(int t, const Floor& floor) const;
-
-  [[nodiscard]] int width() const { return backdrop_.width; }
-
- private:
-  FollowView follow_;
-  Image backdrop_;
-};
-
-/// Concatenates two pictures of the same height horizontally.
-Image Beside(const Image& left, const Image& right);
 
 /// Colouring of the estimated body.
 enum class BodyColours {
@@ -64,10 +39,11 @@ struct OverlayOptions {
   bool side_follows = true;  ///< the side camera follows the person; false: it sees the whole clip's space
   double side_yaw_deg = 90;  ///< 90: from the person's left when it faces the camera
   double side_elevation_deg = 8;
-  double side_aspect = 0.75;                                 ///< width of the panel / its height
-  Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();  ///< for the floor and the side view of a tilted camera
-  double min_confidence = 0.1;                               ///< detections below are not drawn
-  int num_threads = 1;                                       ///< the picture is the same for any number
+  double side_aspect = 0.75;  ///< width of the panel / its height
+  /// For the floor and the side view of a tilted camera, where no ground is known (FloorOfWorld()).
+  Eigen::Vector3d up_in_camera = -Eigen::Vector3d::UnitY();
+  double min_confidence = 0.1;  ///< detections below are not drawn
+  int num_threads = 1;          ///< the picture is the same for any number
   /// False with the reason when a field is out of range.
   bool IsValid(std::string* why) const;
   /// The view of the side panel beside a picture of this height.

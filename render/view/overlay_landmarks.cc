@@ -11,6 +11,7 @@
 #include "geometry/base/check.h"
 #include "render/image/image_mat.h"
 #include "render/image/palette.h"
+#include "render/view/drawing_units.h"
 
 namespace bodyloom {
 namespace {
@@ -69,8 +70,6 @@ std::vector<CaptionLine> LandmarkLegend(bool skeleton) {
 
 namespace {
 
-constexpr int kShift = 4;  // OpenCV's drawing in 1/16 px
-
 using Bone = std::pair<const char*, const char*>;
 constexpr std::array<Bone, 24> kBones = {{
     {"left_shoulder", "right_shoulder"},
@@ -99,8 +98,6 @@ constexpr std::array<Bone, 24> kBones = {{
     {"neck", "mid_hip"},
 }};
 
-cv::Scalar ScalarOf(const Colour& c) { return {double(c.blue), double(c.green), double(c.red)}; }
-
 Colour SideColour(const std::string& a, const std::string& b) {
   const bool left = a.starts_with("left") || b.starts_with("left");
   const bool right = a.starts_with("right") || b.starts_with("right");
@@ -110,15 +107,11 @@ Colour SideColour(const std::string& a, const std::string& b) {
 
 /// False for points that are missing, below the confidence, or so far outside that OpenCV's fixed point would overflow.
 bool IsDrawn(const DrawnKeypoints& keypoints, int k) {
-  const auto p = keypoints.pixels.row(k);
-  if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e5) return false;
+  if (!IsDrawable(keypoints.pixels.row(k).transpose())) return false;
   return keypoints.confidence.empty() || keypoints.confidence[k] > keypoints.min_confidence;
 }
 
-cv::Point PointOf(const DrawnKeypoints& keypoints, int k) {
-  return {static_cast<int>(std::lround(keypoints.pixels(k, 0) * (1 << kShift))),
-          static_cast<int>(std::lround(keypoints.pixels(k, 1) * (1 << kShift)))};
-}
+cv::Point PointOf(const DrawnKeypoints& keypoints, int k) { return FixedPoint(keypoints.pixels.row(k).transpose()); }
 
 void CheckSizes(const DrawnKeypoints& keypoints) {
   const auto n = static_cast<Eigen::Index>(keypoints.names.size());
@@ -171,7 +164,7 @@ void DrawKeypoints(const DrawnKeypoints& keypoints, const KeypointStyle& style, 
           if (a < 0 || b < 0) continue;
           cv::line(mat, PointOf(keypoints, a), PointOf(keypoints, b),
                    ScalarOf(border ? kInkColour : SideColour(bone.first, bone.second)), width + (border ? 2 : 0),
-                   cv::LINE_AA, kShift);
+                   cv::LINE_AA, kDrawingShift);
         }
       }
     }
@@ -179,14 +172,14 @@ void DrawKeypoints(const DrawnKeypoints& keypoints, const KeypointStyle& style, 
       if (!IsDrawn(keypoints, k)) continue;
       const cv::Point p = PointOf(keypoints, k);
       const Colour colour = SideColour(keypoints.names[k], keypoints.names[k]);
-      const auto fixed = [&](double radius) { return static_cast<int>(std::lround(radius * (1 << kShift))); };
+      const auto fixed = [&](double radius) { return static_cast<int>(std::lround(radius * (1 << kDrawingShift))); };
       if (style.hollow) {
         const int ring = std::max(1, static_cast<int>(std::lround(0.35 * r)));
-        cv::circle(mat, p, fixed(r), ScalarOf(kInkColour), ring + 2, cv::LINE_AA, kShift);
-        cv::circle(mat, p, fixed(r), ScalarOf(kPaperColour), ring, cv::LINE_AA, kShift);
+        cv::circle(mat, p, fixed(r), ScalarOf(kInkColour), ring + 2, cv::LINE_AA, kDrawingShift);
+        cv::circle(mat, p, fixed(r), ScalarOf(kPaperColour), ring, cv::LINE_AA, kDrawingShift);
       } else {
-        cv::circle(mat, p, fixed(r + 1.2), ScalarOf(kInkColour), cv::FILLED, cv::LINE_AA, kShift);
-        cv::circle(mat, p, fixed(r), ScalarOf(colour), cv::FILLED, cv::LINE_AA, kShift);
+        cv::circle(mat, p, fixed(r + 1.2), ScalarOf(kInkColour), cv::FILLED, cv::LINE_AA, kDrawingShift);
+        cv::circle(mat, p, fixed(r), ScalarOf(colour), cv::FILLED, cv::LINE_AA, kDrawingShift);
       }
     }
   });
@@ -200,7 +193,7 @@ void DrawResiduals(const DrawnKeypoints& detected, const DrawnKeypoints& project
   for (int k = 0; k < static_cast<int>(detected.names.size()); ++k) {
     if (!IsDrawn(detected, k) || !IsDrawn(projected, k)) continue;
     cv::line(mat, PointOf(detected, k), PointOf(projected, k), ScalarOf(kPaperColour),
-             std::max(1, static_cast<int>(std::lround(width_px))), cv::LINE_AA, kShift);
+             std::max(1, static_cast<int>(std::lround(width_px))), cv::LINE_AA, kDrawingShift);
   }
 }
 

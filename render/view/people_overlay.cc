@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/view/people_overlay.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -50,31 +51,34 @@ std::vector<int> FramesAt(const std::vector<double>& moments, const std::vector<
   return frames;
 }
 
-/// Joints of all people present, preceded by their common centre (the mean of the pelvises) for the camera to follow.
-std::vector<MatrixX3d> JointsTogether(const std::vector<PersonInOverlay>& people,
-                                      const std::vector<std::vector<int>>& frames, size_t num_moments) {
-  std::vector<std::vector<MatrixX3d>> joints;
-  joints.reserve(people.size());
-  for (const PersonInOverlay& person : people) joints.push_back(TrackJoints(*person.body, *person.track));
-  std::vector<MatrixX3d> together(num_moments);
-  for (size_t t = 0; t < num_moments; ++t) {
-    std::vector<const MatrixX3d*> present;
-    Eigen::Index rows = 0;
-    for (size_t i = 0; i < people.size(); ++i) {
-      if (frames[i][t] < 0 || joints[i][size_t(frames[i][t])].rows() == 0) continue;
-      present.push_back(&joints[i][size_t(frames[i][t])]);
-      rows += present.back()->rows();
-    }
-    if (present.empty()) continue;
-    MatrixX3d& all = together[t] = MatrixX3d::Zero(1 + rows, 3);
-    Eigen::Index at = 1;
-    for (const MatrixX3d* one : present) {
-      all.row(0) += one->row(0) / double(present.size());
-      all.middleRows(at, one->rows()) = *one;
-      at += one->rows();
-    }
+/// Joints of one person by moment, no rows where the person is absent or lost.
+std::vector<MatrixX3d> JointsByMoment(const PersonInOverlay& person, const std::vector<int>& frames) {
+  const std::vector<MatrixX3d> joints = TrackJoints(*person.body, *person.track);
+  std::vector<MatrixX3d> by_moment(frames.size());
+  for (size_t t = 0; t < frames.size(); ++t) {
+    if (frames[t] >= 0) by_moment[t] = joints[size_t(frames[t])];
   }
-  return together;
+  return by_moment;
+}
+
+/// Mean height in the image of a person's joints over all moments, pixels; 0 where it is absent or behind the camera.
+double MeanHeightPx(const PersonInOverlay& person, const std::vector<int>& frames,
+                    const std::vector<MatrixX3d>& joints) {
+  double sum = 0;
+  for (size_t t = 0; t < joints.size(); ++t) {
+    if (joints[t].rows() == 0) continue;
+    const Track& track = *person.track;
+    const MatrixX3d seen =
+        track.HasMovingCamera() ? MovedPoints(track.camera_from_scene[size_t(frames[t])], joints[t]) : joints[t];
+    Eigen::AlignedBox1d rows;
+    for (Eigen::Index j = 0; j < seen.rows(); ++j) {
+      Eigen::Vector2d pixel;
+      if (track.camera.Project(seen.row(j).transpose(), &pixel))
+        rows.extend(Eigen::AlignedBox1d::VectorType(pixel.y()));
+    }
+    if (!rows.isEmpty()) sum += rows.sizes()[0];
+  }
+  return sum / double(joints.size());
 }
 
 }  // namespace
@@ -90,10 +94,23 @@ PeopleOverlay::PeopleOverlay(std::vector<PersonInOverlay> people, const OverlayO
     frames_.push_back(FramesAt(timestamps_, person.track->motion.timestamps));
   }
   backdrop_ = StudioBackdrop(camera().width, camera().height);
-  const std::vector<MatrixX3d> joints = JointsTogether(people_, frames_, timestamps_.size());
-  floor_ = ground ? ground : FloorUnder(joints, options.up_in_camera);
+  std::vector<std::vector<MatrixX3d>> joints;
+  std::vector<MatrixX3d> all;
+  std::vector<double> heights;
+  for (size_t i = 0; i < people_.size(); ++i) {
+    joints.push_back(JointsByMoment(people_[i], frames_[i]));
+    all.insert(all.end(), joints[i].begin(), joints[i].end());
+    heights.push_back(MeanHeightPx(people_[i], frames_[i], joints[i]));
+    if (heights[i] > 0) in_panel_.push_back(i);
+  }
+  floor_ = ground ? ground : FloorUnder(all, options.up_in_camera);
   BODYLOOM_CHECK(floor_, "overlay: nobody has a pose in any frame");
-  if (options.side_view) side_.emplace(joints, timestamps_, options.SideView(camera().height));
+  std::stable_sort(in_panel_.begin(), in_panel_.end(), [&](size_t a, size_t b) { return heights[a] > heights[b]; });
+  if (!options.side_view || in_panel_.empty()) return;
+  std::vector<SidePanelPerson> largest_first;
+  for (const size_t i : in_panel_) largest_first.push_back({std::move(joints[i])});
+  side_.emplace(largest_first, timestamps_, options.SideView(camera().height), *floor_);
+  in_panel_.resize(size_t(side_->num_cells()));
 }
 
 PeopleOverlay::Scene PeopleOverlay::SceneAt(int moment) const {
@@ -106,7 +123,7 @@ PeopleOverlay::Scene PeopleOverlay::SceneAt(int moment) const {
     num_vertices += bodies[i].rows();
     if (bodies[i].rows() > 0) num_faces += people_[i].body->data().faces.rows();
   }
-  Scene scene{MatrixX3d(num_vertices, 3), MatrixX3i(num_faces, 3), {}};
+  Scene scene{{}, MatrixX3d(num_vertices, 3), MatrixX3i(num_faces, 3), {}};
   scene.colours.reserve(size_t(num_faces));
   Eigen::Index vertex = 0, face = 0;
   for (size_t i = 0; i < people_.size(); ++i) {
@@ -118,24 +135,34 @@ PeopleOverlay::Scene PeopleOverlay::SceneAt(int moment) const {
     vertex += bodies[i].rows();
     face += faces.rows();
   }
+  scene.bodies = std::move(bodies);
   return scene;
 }
 
-MeshStyle PeopleOverlay::Style(const Scene& scene, double alpha) const {
-  return {.face_colours = scene.colours,
-          .alpha = alpha,
-          .samples = OverlaySamples(camera().height),
-          .num_threads = options_.num_threads};
+MeshStyle PeopleOverlay::Style() const {
+  return {.samples = OverlaySamples(camera().height), .num_threads = options_.num_threads};
 }
 
 Image PeopleOverlay::Side(int moment, const Scene& scene) const {
-  SidePanel::Picture panel = side_->At(moment, *floor_);
-  if (scene.vertices.rows() > 0) {
-    const MatrixX3d vertices = panel.view.Apply(scene.vertices);
-    DrawShadow(vertices, scene.faces, panel.floor, panel.view.camera, 0.3, &panel.image);
-    drawer_.Draw(vertices, scene.faces, panel.view.camera, Style(scene, 1), &panel.image);
+  const double caption_height = OverlayCaptionHeight(camera().height);
+  std::vector<SidePanel::Picture> pictures;
+  for (int cell = 0; cell < side_->num_cells(); ++cell) {
+    const size_t i = in_panel_[size_t(cell)];
+    const Colour colour = PersonColour(people_[i].number);
+    SidePanel::Picture picture = side_->At(cell, moment);
+    MeshStyle style = Style();
+    style.colour = colour;
+    DrawInPanel({.vertices = scene.bodies[i], .faces = &people_[i].body->data().faces, .style = std::move(style)},
+                caption_height, &drawer_, &picture);
+    if (people_.size() > 1) {
+      DrawCaption({{Concatenate("person ", people_[i].number), CaptionLine::Mark::kDisc, colour}}, Corner::kTopLeft,
+                  caption_height, &picture.image);
+    }
+    pictures.push_back(std::move(picture));
   }
-  return std::move(panel.image);
+  Image panel = side_->Joined(pictures);
+  DrawCaption({{"seen from the side"}}, Corner::kBottomRight, caption_height, &panel);
+  return panel;
 }
 
 void PeopleOverlay::DrawCaptions(int moment, Image* image) const {
@@ -183,7 +210,10 @@ Image PeopleOverlay::Render(int moment, const Image* background) const {
     DrawShadow(vertices, scene.faces, floor, camera(), 0.35, &view);
   }
   if (has_bodies) {
-    drawer_.Draw(vertices, scene.faces, camera(), Style(scene, background != nullptr ? options_.alpha : 1), &view);
+    MeshStyle style = Style();
+    style.face_colours = scene.colours;
+    style.alpha = background != nullptr ? options_.alpha : 1;
+    drawer_.Draw(vertices, scene.faces, camera(), style, &view);
   }
   for (size_t i = 0; i < people_.size(); ++i) {
     const auto& [body, track, detected, number] = people_[i];
@@ -198,9 +228,7 @@ Image PeopleOverlay::Render(int moment, const Image* background) const {
   }
   DrawCaptions(moment, &view);
   if (!side_) return view;
-  Image panel = Side(moment, scene);
-  DrawCaption({{"seen from the side"}}, Corner::kBottomRight, OverlayCaptionHeight(view.height), &panel);
-  return Beside(view, panel);
+  return Beside(view, Side(moment, scene));
 }
 
 }  // namespace bodyloom

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Draws overlays of several people: their bodies over the video as one scene with correct occlusion, each in its own
-/// colour, and optionally a side view, where errors in depth are visible.
+/// colour, and optionally a side view (render/view/side_panel.h) of up to three people, the largest in the image.
 #pragma once
 
 #include <optional>
@@ -46,8 +46,9 @@ class PeopleOverlay {
   [[nodiscard]] Image Render(int moment, const Image* background) const;
 
  private:
-  /// All bodies at one moment as one mesh.
+  /// All bodies at one moment, and as one mesh.
   struct Scene {
+    std::vector<MatrixX3d> bodies;  ///< by person; no rows: absent or lost
     MatrixX3d vertices;
     MatrixX3i faces;
     std::vector<Colour> colours;  ///< of faces
@@ -63,7 +64,7 @@ class PeopleOverlay {
   /// Track and frame that give a moving camera's pose at a moment; empty for a static camera.
   [[nodiscard]] std::optional<Seen> SeenFrom(int moment) const;
   [[nodiscard]] Scene SceneAt(int moment) const;
-  [[nodiscard]] MeshStyle Style(const Scene& scene, double alpha) const;
+  [[nodiscard]] MeshStyle Style() const;
   [[nodiscard]] Image Side(int moment, const Scene& scene) const;
   void DrawCaptions(int moment, Image* image) const;
 
@@ -72,7 +73,8 @@ class PeopleOverlay {
   std::vector<double> timestamps_;
   std::vector<std::vector<int>> frames_;  ///< [person][moment]: frame of the person's track, −1: absent
   std::optional<SidePanel> side_;
-  std::optional<Floor> floor_;  ///< camera frame
+  std::vector<size_t> in_panel_;  ///< people by cell of the panel
+  std::optional<Floor> floor_;    ///< camera frame
   Image backdrop_;
   mutable MeshDrawer drawer_;  ///< reuses its memory
 };

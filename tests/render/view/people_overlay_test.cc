@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/image/palette.h"
@@ -89,27 +90,74 @@ TEST(PeopleOverlay, WhoeverIsNotThereIsNotDrawn) {
   EXPECT_FALSE(SameBelowCaption(both.Render(2, &video), PeopleOverlay({a}).Render(2, &video)));
 }
 
-TEST(PeopleOverlay, TheSideViewShowsWhoStandsInFront) {
-  const Track near = Standing(0, 3, 0, 2), far = Standing(0, 4.5, 0, 2);
-  OverlayOptions options;
-  options.side_view = true;
-  const PeopleOverlay both(
-      {{.body = &ToyBody(), .track = &near, .number = 0}, {.body = &ToyBody(), .track = &far, .number = 1}}, options);
-  EXPECT_EQ(both.width(), 480 + 270);
-  const Image image = both.Render(1, nullptr);
-  // In the panel the two stand apart: the mean place of each one's colour (PersonColour: blue, and yellow).
-  double blue = 0, yellow = 0;
-  int num_blue = 0, num_yellow = 0;
-  for (int y = 0; y < 270; ++y) {
-    for (int x = 480; x < 750; ++x) {
+/// Pixels of a person's colour (PersonColour: 0 is blue, 1 is yellow) in the panel below its captions, and their mean
+/// column.
+struct Coloured {
+  int count = 0;
+  double column = 0;
+};
+Coloured InPanel(const Image& image, bool blue) {
+  Coloured found;
+  for (int y = kCaptionEnd; y < 330; ++y) {
+    for (int x = 480; x < image.width; ++x) {
       const Colour c = image.at(x, y);
-      if (c.blue > c.red + 40) blue += x, ++num_blue;
-      if (c.red > c.blue + 40) yellow += x, ++num_yellow;
+      if (blue ? c.blue <= c.red + 40 : c.red <= c.blue + 40) continue;
+      found.column += x;
+      ++found.count;
     }
   }
-  ASSERT_GT(num_blue, 450);
-  ASSERT_GT(num_yellow, 450);
-  EXPECT_GT(std::abs(blue / num_blue - yellow / num_yellow), 75);
+  found.column /= std::max(1, found.count);
+  return found;
+}
+
+TEST(PeopleOverlay, TheSideViewHasACellForEachTheLargestFirst) {
+  const Track near = Standing(0, 3, 0, 2), behind = Standing(0, 4.5, 0, 2), far = Standing(6, 30, 0, 2);
+  OverlayOptions options;
+  options.side_view = true;
+  const auto drawn = [&](const Track& other) {
+    const PeopleOverlay both(
+        {{.body = &ToyBody(), .track = &other, .number = 1}, {.body = &ToyBody(), .track = &near, .number = 0}},
+        options);
+    EXPECT_EQ(both.width(), 480 + 270);
+    return both.Render(1, nullptr);
+  };
+  const Image image = drawn(behind);
+  const Coloured first = InPanel(image, true), second = InPanel(image, false);
+  ASSERT_GT(first.count, 450);
+  ASSERT_GT(second.count, 450);
+  EXPECT_LT(first.column, 480 + 135);
+  EXPECT_GT(second.column, 480 + 135);
+  // Ten times as far away the other one changes nothing of the first, and is as large itself.
+  const Coloured still_first = InPanel(drawn(far), true), still_second = InPanel(drawn(far), false);
+  EXPECT_EQ(still_first.count, first.count);
+  EXPECT_NEAR(still_second.count, second.count, 0.03 * second.count);
+}
+
+TEST(PeopleOverlay, TheSideViewShowsHowFarABodyIsFromTheFloor) {
+  const Track track = Standing(0, 3, 0, 2);
+  const std::vector<PersonInOverlay> person = {{.body = &ToyBody(), .track = &track}};
+  OverlayOptions options;
+  options.side_view = true;
+  const double lowest = TrackVertices(ToyBody(), track, 0).col(1).maxCoeff();
+  const auto panel = [&](double height) {
+    const Floor floor{Eigen::Vector3d(0, lowest + height, 0), -Eigen::Vector3d::UnitY()};
+    return PeopleOverlay(person, options, floor).Render(0, nullptr);
+  };
+  const auto count = [](const Image& image, auto is) {
+    int sum = 0;
+    for (int y = kCaptionEnd; y < 320; ++y) {
+      for (int x = 480; x < image.width; ++x) sum += is(image.at(x, y));
+    }
+    return sum;
+  };
+  const auto red = [](const Colour& c) { return c.red > c.green + 80 && c.red > c.blue + 80; };
+  const auto green = [](const Colour& c) { return c.green > c.red + 60 && c.green > c.blue + 40; };
+  EXPECT_GT(count(panel(0), green), 4);
+  EXPECT_EQ(count(panel(0), red), 0);
+  EXPECT_EQ(count(panel(0.1), green), 0);
+  EXPECT_EQ(count(panel(0.1), red), 0);
+  EXPECT_GT(count(panel(-0.1), red), 10);
+  EXPECT_EQ(panel(0.1), panel(0.1)) << "same input, same bytes";
 }
 
 TEST(PeopleOverlay, AGroundThatIsKnownIsWhereTheFloorIs) {

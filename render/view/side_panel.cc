@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/view/side_panel.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "geometry/base/check.h"
+#include "render/image/palette.h"
+#include "render/view/ground_marks.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Vector3d;
+
+// A metre of the person in panel heights: an adult of 1.7 m fills a quarter of it. (Three who stand and reach out, in
+// cells side by side, fill 0.28.)
+constexpr double kSmallestMetre = 0.25 / 1.7;
+// The floor is kept in view down to this far below the lowest joint, metres: a larger error leaves the picture, and the
+// number beside the line tells it.
+constexpr double kFloorInViewM = 0.5;
+
+/// The same person with the place of the floor below its lowest joint among what is kept in view.
+SidePanelPerson WithFloor(SidePanelPerson person, const Floor& floor) {
+  const Vector3d up = floor.up.normalized();
+  person.others.resize(person.joints.size());
+  for (size_t t = 0; t < person.joints.size(); ++t) {
+    const MatrixX3d& joints = person.joints[t];
+    if (joints.rows() == 0) continue;
+    Eigen::Index lowest = 0;
+    const double height = ((joints.rowwise() - floor.point.transpose()) * up).minCoeff(&lowest);
+    MatrixX3d& others = person.others[t];
+    others.conservativeResize(others.rows() + 1, 3);
+    others.bottomRows<1>() = joints.row(lowest) - std::clamp(height, 0.0, kFloorInViewM) * up.transpose();
+  }
+  return person;
+}
+
+}  // namespace
+
+std::vector<SidePanel::Cell> SidePanel::Arranged(const std::vector<SidePanelPerson>& people,
+                                                 const std::vector<double>& timestamps,
+                                                 const FollowViewOptions& options, bool stacked) {
+  std::vector<Cell> cells;
+  const int n = static_cast<int>(people.size());
+  for (int k = 0; k < n; ++k) {
+    const int whole = stacked ? options.height : options.width, begin = whole * k / n, end = whole * (k + 1) / n;
+    FollowViewOptions own = options;
+    (stacked ? own.height : own.width) = end - begin;
+    const SidePanelPerson& person = people[static_cast<size_t>(k)];
+    cells.push_back({stacked ? 0 : begin, stacked ? begin : 0,
+                     FollowView(person.joints, timestamps, own, person.others), StudioBackdrop(own.width, own.height)});
+  }
+  return cells;
+}
+
+double SidePanel::SmallestScale(const std::vector<Cell>& cells) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Cell& cell : cells) {
+    const View view = cell.follow.At(0);
+    const double depth = view.Apply(cell.follow.CentreAt(0).transpose())(0, 2);
+    smallest = std::min(smallest, PixelsPerMetre(view.camera, depth));
+  }
+  return smallest;
+}
+
+SidePanel::SidePanel(const std::vector<SidePanelPerson>& people, const std::vector<double>& timestamps,
+                     const FollowViewOptions& options, const Floor& floor)
+    : width_(options.width), height_(options.height), floor_(floor) {
+  BODYLOOM_CHECK(!people.empty(), "side panel: nobody to show");
+  std::vector<SidePanelPerson> shown;
+  for (const SidePanelPerson& person : people) {
+    if (shown.size() == kMostPeople) break;
+    shown.push_back(WithFloor(person, floor));
+  }
+  for (; cells_.empty(); shown.pop_back()) {
+    std::vector<Cell> stacked = Arranged(shown, timestamps, options, true);
+    std::vector<Cell> abreast = Arranged(shown, timestamps, options, false);
+    const double above = SmallestScale(stacked), beside = SmallestScale(abreast);
+    if (shown.size() == 1 || std::max(above, beside) >= kSmallestMetre * height_) {
+      cells_ = above >= beside ? std::move(stacked) : std::move(abreast);
+    }
+  }
+}
+
+SidePanel::Picture SidePanel::At(int cell, int t) const {
+  BODYLOOM_CHECK(cell >= 0 && cell < num_cells(), "side panel: cell ", cell, " of ", num_cells());
+  const Cell& own = cells_[static_cast<size_t>(cell)];
+  const View view = own.follow.At(t);
+  const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
+  const Vector3d& translation = view.from_camera.camera_from_world_translation;
+  Picture picture{view, {R * floor_.point + translation, R * floor_.up}, own.backdrop};
+  DrawFloorGrid(picture.floor, R * own.follow.CentreAt(t) + translation, {}, view.camera, &picture.image);
+  return picture;
+}
+
+Image SidePanel::Joined(const std::vector<Picture>& pictures) const {
+  BODYLOOM_CHECK(pictures.size() == cells_.size(), "side panel: ", pictures.size(), " pictures for ", cells_.size(),
+                 " cells");
+  if (pictures.size() == 1) return pictures[0].image;
+  Image panel(width_, height_);
+  for (size_t k = 0; k < cells_.size(); ++k) {
+    const Cell& cell = cells_[k];
+    Paste(pictures[k].image, cell.x, cell.y, &panel);
+    // A thin line between cells.
+    if (cell.x > 0) Paste(Image(1, height_, kInkColour), cell.x, 0, &panel);
+    if (cell.y > 0) Paste(Image(width_, 1, kInkColour), 0, cell.y, &panel);
+  }
+  return panel;
+}
+
+void DrawInPanel(const BodyInPanel& body, double caption_height, MeshDrawer* drawer, SidePanel::Picture* picture) {
+  if (body.vertices.rows() == 0) return;
+  const MatrixX3d vertices = picture->view.Apply(body.vertices);
+  const Camera& camera = picture->view.camera;
+  DrawShadow(vertices, *body.faces, picture->floor, camera, 0.3, &picture->image, {0, 0});
+  drawer->Draw(vertices, *body.faces, camera, body.style, &picture->image);
+  if (!body.marks) return;
+  DrawFloorContact(ContactWithFloor(vertices, picture->floor), picture->floor, camera, caption_height, &picture->image);
+}
+
+Image Beside(const Image& left, const Image& right) {
+  Image both(left.width + right.width, left.height);
+  Paste(left, 0, 0, &both);
+  Paste(right, left.width, 0, &both);
+  return both;
+}
+
+}  // namespace bodyloom
