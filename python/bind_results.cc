@@ -25,6 +25,9 @@ truth     a Track, a track or part labels (.npz), an AIST++ folder or a Pose2Sim
 body      Body that both were made with, or a file; None: the track's own
 cameras   AIST++: camera folder; sequence: name of the clip; view: the camera that the track was fitted to
 
+With or without a truth, a track that states a world is measured in it: "hover_percent", "ground_penetration_p95_mm",
+"balance_outside_percent", "lean_median_deg", ... (docs/evaluation.md).
+
 Returns an Evaluation. Raises ValueError for arguments that do not go together, RuntimeError naming a file that cannot
 be used.)";
 
