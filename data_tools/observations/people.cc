@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "data_tools/observations/doubles.h"
 #include "geometry/base/check.h"
 #include "geometry/scene/observations.h"
 
@@ -136,6 +137,7 @@ std::vector<PersonTrack> LinkPeople(const PeopleSequence& people) {
     }
   }
   for (OpenTrack& track : tracks) result.push_back(std::move(track.track));
+  result = JoinDoubles(people, std::move(result));
   std::stable_sort(result.begin(), result.end(),
                    [](const PersonTrack& a, const PersonTrack& b) { return a.weight > b.weight; });
   return result;

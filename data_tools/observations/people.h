@@ -5,7 +5,8 @@
 /// to the track whose last landmarks are nearest (mean distance over landmarks present in both, relative to the
 /// person's size), nearest pairs first; a detection that is far from every track starts a new one. A track continues
 /// across gaps, its gate widening with their length, and ends after 30 frames without a detection plus ten for each
-/// frame with one. Detections with identities from the detector are joined by identity.
+/// frame with one. Detections with identities from the detector are joined by identity. Tracks of one body that was
+/// found twice are one (doubles.h).
 #pragma once
 
 #include <string>
@@ -33,6 +34,7 @@ struct PeopleSequence {
 struct PersonTrack {
   std::vector<std::pair<int, int>> detections;  ///< (frame, index in that frame), frames increasing
   double weight = 0;                            ///< Σ over frames of box diagonal (px) × mean confidence
+  int joined = 0;  ///< number of other tracks of the same body that are left out (doubles.h)
 };
 
 /// All tracks by descending weight: index 0 is the person who is largest, most confident and longest in the image.

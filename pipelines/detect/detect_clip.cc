@@ -94,6 +94,7 @@ nlohmann::ordered_json PeopleJson(const std::vector<FoundPerson>& people) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const FoundPerson& person : people) {
     list.push_back({{"frames", person.frames},
+                    {"joined", person.joined},
                     {"first_s", person.first_s},
                     {"last_s", person.last_s},
                     {"height_px", person.height_px},
@@ -109,7 +110,9 @@ std::string ToText(const std::vector<FoundPerson>& people) {
     const FoundPerson& person = people[i];
     text += Concatenate("person ", i, " ", person.frames, " frames, ", Fixed(person.first_s, 2), " to ",
                         Fixed(person.last_s, 2), " s, ", Fixed(person.height_px, 0), " px tall, ",
-                        Fixed(100 * person.visible, 0), " % of the landmarks visible\n");
+                        Fixed(100 * person.visible, 0), " % of the landmarks visible");
+    text +=
+        person.joined > 0 ? Concatenate("; found ", person.joined + 1, " times over in the same body, joined\n") : "\n";
   }
   if (people.size() > kMaxShown) text += Concatenate("and ", people.size() - kMaxShown, " more\n");
   return text;
@@ -122,6 +125,7 @@ std::vector<FoundPerson> FoundPeople(const PeopleSequence& people, const std::ve
   for (const PersonTrack& track : tracks) {
     FoundPerson& person = found.emplace_back();
     person.frames = int(track.detections.size());
+    person.joined = track.joined;
     person.first_s = people.timestamps[size_t(track.detections.front().first)];
     person.last_s = people.timestamps[size_t(track.detections.back().first)];
     std::vector<double> heights;

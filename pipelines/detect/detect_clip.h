@@ -28,6 +28,7 @@ struct DetectClipRequest {
 /// One person found, in LinkPeople()'s order.
 struct FoundPerson {
   int frames = 0;                  ///< number of frames in view
+  int joined = 0;                  ///< PersonTrack::joined
   double first_s = 0, last_s = 0;  ///< seconds
   double height_px = 0;            ///< median extent of the landmarks from top to bottom
   double visible = 0;              ///< mean share of landmarks with a confidence of at least ½
