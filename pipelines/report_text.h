@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdio>
-#include <map>
 #include <string>
 
 #include "geometry/base/stopwatch.h"
@@ -16,9 +15,6 @@ inline std::string Fixed(double value, int digits) {
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
 }
-
-/// "5 lost, 8 tracked": counts by name, without zeros; empty when none is left.
-std::string CountsText(const std::map<std::string, int>& counts);
 
 /// "read 0.43, detect 63.70": seconds by stage with two decimals.
 std::string StagesText(const StageSeconds& stages);

@@ -2,6 +2,7 @@
 #include "pipelines/track/chosen_people.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,23 @@
 namespace bodyloom {
 namespace {
 
+/// Whoever is seen in fewer frames is seen too briefly.
+double FewestFrames(const TrackPeopleRequest& request, const PeopleSequence& people) {
+  return std::min(request.min_seconds * VideoFrameRate(people.timestamps), 0.5 * double(people.timestamps.size()));
+}
+
+/// The reason for which a person of `frames` frames was not chosen.
+std::string WhyLeftOut(const TrackPeopleRequest& request, const PeopleSequence& people, int frames) {
+  if (request.person) return Concatenate("--person ", *request.person, " asks for another one");
+  if (const double fewest = FewestFrames(request, people); frames < fewest) {
+    const int whole = int(std::ceil(fewest));
+    return fewest < 0.5 * double(people.timestamps.size())
+               ? Concatenate("fewer than the ", whole, " frames of ", request.min_seconds, " s")
+               : Concatenate("fewer than half of the clip's ", people.timestamps.size(), " frames");
+  }
+  return Concatenate("--people ", request.max_people, " takes those who are larger and longer in view");
+}
+
 /// Numbers of those to be tracked, in LinkPeople()'s order.
 std::vector<int> ChoosePeople(const TrackPeopleRequest& request, const DetectedClip& clip,
                               const std::vector<PersonTrack>& everybody) {
@@ -22,18 +40,17 @@ std::vector<int> ChoosePeople(const TrackPeopleRequest& request, const DetectedC
     PersonOf(clip.people, *request.person, video);  // throws when there is no such person
     return {*request.person};
   }
-  const std::vector<double>& times = clip.people.timestamps;
-  const double fps = VideoFrameRate(times);
-  const double min_frames = std::min(request.min_seconds * fps, 0.5 * double(times.size()));
+  const double fewest = FewestFrames(request, clip.people);
   std::vector<int> chosen;
   for (size_t i = 0; i < everybody.size(); ++i) {
     if (request.max_people > 0 && int(chosen.size()) == request.max_people) break;
-    if (double(everybody[i].detections.size()) >= min_frames) chosen.push_back(int(i));
+    if (double(everybody[i].detections.size()) >= fewest) chosen.push_back(int(i));
   }
   if (chosen.empty()) {
-    throw NoPersonFound(everybody.empty() ? Concatenate(video, ": nobody was found in ", times.size(), " frames")
-                                          : Concatenate(video, ": nobody was seen for ", request.min_seconds,
-                                                        " s; --person 0 takes whoever was seen most"));
+    throw NoPersonFound(everybody.empty()
+                            ? Concatenate(video, ": nobody was found in ", clip.people.timestamps.size(), " frames")
+                            : Concatenate(video, ": nobody was seen for ", request.min_seconds,
+                                          " s; --person 0 takes whoever was seen most"));
   }
   return chosen;
 }
@@ -102,6 +119,11 @@ TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople
     TrackedPerson& person = report.people.emplace_back();
     person.number = number;
     person.seen = found[size_t(number)];
+  }
+  for (int number = 0; number < report.num_found; ++number) {
+    if (std::find(people.chosen.begin(), people.chosen.end(), number) != people.chosen.end()) continue;
+    const FoundPerson& seen = found[size_t(number)];
+    report.left_out.push_back({number, seen, WhyLeftOut(request, detected, seen.frames)});
   }
   return report;
 }

@@ -16,17 +16,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// "person 1 21 frames, 1.03 to 1.77 s, 228 px tall: "
+std::string SeenText(int number, const FoundPerson& seen) {
+  return Concatenate("person ", number, " ", seen.frames, " frames, ", Fixed(seen.first_s, 2), " to ",
+                     Fixed(seen.last_s, 2), " s, ", Fixed(seen.height_px, 0), " px tall: ");
+}
+
 std::string PersonText(const TrackedPerson& person) {
-  std::string text =
-      Concatenate("person ", person.number, " ", person.seen.frames, " frames, ", Fixed(person.seen.first_s, 2), " to ",
-                  Fixed(person.seen.last_s, 2), " s, ", Fixed(person.seen.height_px, 0), " px tall: ");
+  std::string text = SeenText(person.number, person.seen);
   if (person.track.empty()) return text + "could not be tracked (" + person.solve.message + ")\n";
-  text += CountsText(person.solve.frames_by_status) + "; 2D joints: median " +
-          Fixed(person.solve.reprojection_median_px, 2) + " px\n";
+  text +=
+      person.solve.FramesReport() + "; 2D joints: median " + Fixed(person.solve.reprojection_median_px, 2) + " px\n";
   if (person.solve.stature_m > 0) {
     text += "         taken to be " + Fixed(person.solve.stature_m, 2) + " m tall\n";
   }
   if (person.room.frames > 0) text += "         " + person.room.BriefReport() + "\n";
+  if (person.seen.joined > 0) {
+    text += Concatenate("         found ", person.seen.joined + 1, " times over in the same body, joined\n");
+  }
   if (person.hidden.any()) {
     text += Concatenate("         partly hidden by others in ", person.hidden.frames, " frames\n");
   }
@@ -62,6 +69,7 @@ Json PersonJson(const TrackedPerson& person) {
   return {{"number", person.number},
           {"track", person.track},
           {"frames", person.seen.frames},
+          {"joined", person.seen.joined},
           {"first_s", person.seen.first_s},
           {"last_s", person.seen.last_s},
           {"height_px", person.seen.height_px},
@@ -69,6 +77,7 @@ Json PersonJson(const TrackedPerson& person) {
           {"status", ToString(solve.status)},
           {"message", solve.message},
           {"frames_by_status", solve.frames_by_status},
+          {"lost_in_holes", solve.lost_in_holes},
           {"reprojection_median_px", solve.reprojection_median_px},
           {"reprojection_p95_px", solve.reprojection_p95_px},
           {"focal_px", solve.focal_px},
@@ -85,9 +94,12 @@ std::string ToText(const TrackPeopleReport& report) {
   std::string text = Concatenate("frames   ", report.num_frames, " of ", report.width, "x", report.height, " pixels, ",
                                  Fixed(report.fps, 2), " a second\n");
   for (const TrackedPerson& person : report.people) text += PersonText(person);
-  if (const int others = report.num_found - int(report.people.size()); others > 0) {
-    text += Concatenate("left out ", others, " more, seen too briefly or not asked for\n");
+  constexpr size_t kMostTold = 10;
+  const std::vector<LeftOutPerson>& left_out = report.left_out;
+  for (size_t i = 0; i < std::min(kMostTold, left_out.size()); ++i) {
+    text += "left out " + SeenText(left_out[i].number, left_out[i].seen) + left_out[i].why + "\n";
   }
+  if (left_out.size() > kMostTold) text += Concatenate("left out ", left_out.size() - kMostTold, " more\n");
   if (report.masks_cut) text += Concatenate("masks    ", MasksText(*report.masks_cut), "\n");
   text += ToText(report.camera_path, report.camera_scale);
   text += SceneText(report.scene);
@@ -106,6 +118,14 @@ std::string ToText(const TrackPeopleReport& report) {
 std::string ToJson(const TrackPeopleReport& report) {
   Json people = Json::array();
   for (const TrackedPerson& person : report.people) people.push_back(PersonJson(person));
+  Json left_out = Json::array();
+  for (const LeftOutPerson& person : report.left_out) {
+    left_out.push_back({{"number", person.number},
+                        {"frames", person.seen.frames},
+                        {"first_s", person.seen.first_s},
+                        {"last_s", person.seen.last_s},
+                        {"why", person.why}});
+  }
   Json json = {{"video", report.video},
                {"image_size", {report.width, report.height}},
                {"frames", report.num_frames},
@@ -113,6 +133,7 @@ std::string ToJson(const TrackPeopleReport& report) {
                {"network", report.network},
                {"people_found", report.num_found},
                {"people", people},
+               {"left_out", left_out},
                {"scene", SceneJson(report.scene)},
                {"world", ToJson(report.world)},
                {"seconds", ToJson(report.seconds)},

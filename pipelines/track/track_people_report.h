@@ -27,6 +27,13 @@ struct TrackedPerson {
   std::string track;          ///< file; empty if not tracked (solve.message)
 };
 
+/// Someone found who is not tracked.
+struct LeftOutPerson {
+  int number = 0;  ///< in LinkPeople()'s order
+  FoundPerson seen;
+  std::string why;  ///< "fewer than the 15 frames of 0.5 s"
+};
+
 struct TrackPeopleReport {
   std::string video;
   int width = 0, height = 0, num_frames = 0;
@@ -35,6 +42,7 @@ struct TrackPeopleReport {
   std::optional<bool> masks_cut;  ///< of masks that were written: CutMasks()
   int num_found = 0;              ///< people in the detections, including those left out
   std::vector<TrackedPerson> people;
+  std::vector<LeftOutPerson> left_out;
   SharedScene scene;
   WorldFrame world;  ///< of all tracks
   CameraPathReport camera_path;

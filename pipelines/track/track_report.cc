@@ -114,7 +114,7 @@ std::string FocalSigmaText(double focal_log_sigma) {
 std::string ToText(const TrackReport& report) {
   const TrackSequenceSummary& solve = report.solve;
   std::string text = std::to_string(report.num_frames) + " frames: ";
-  const std::string counts = CountsText(solve.frames_by_status);
+  const std::string counts = solve.FramesReport();
   text += (counts.empty() ? "none estimated" : counts) + "\n";
   text += "solve    " + ToString(solve.status) + ", " + solve.solver + ", " + std::to_string(solve.iterations) +
           " iterations" +
@@ -194,6 +194,7 @@ std::string ToJson(const TrackReport& report) {
       {"detections", report.detections},
       {"frames", report.num_frames},
       {"frames_by_status", solve.frames_by_status},
+      {"lost_in_holes", solve.lost_in_holes},
       {"solver", solve.solver},
       {"iterations", solve.iterations},
       {"initial_cost", solve.initial_cost},

@@ -82,6 +82,30 @@ TEST(TrackSequence, MissingFramesAreCarriedAndSaidToBeUncertain) {
   EXPECT_GT(result.track.joint_sigma(19, wrist), 1.5 * result.track.joint_sigma(5, wrist));
 }
 
+TEST(TrackSequence, LongHolesAreLostAndShortOnesCarried) {
+  SynthClip clip = Clip(80, 0);  // 15 a second
+  const auto hide = [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) {
+      for (int k = 0; k < clip.keypoints.num_points(); ++k) clip.keypoints.at(t, k).confidence = 0;
+    }
+  };
+  hide(5, 26);   // 22/15 s from sight to sight
+  hide(40, 63);  // 24/15 s
+  hide(76, 80);
+  const TrackSequenceResult result = TrackClip(clip, CameraKnowledge::kKnown);
+  ASSERT_TRUE(result.summary.IsUsable());
+  EXPECT_EQ(result.summary.frames_by_status.at("interpolated"), 21);
+  EXPECT_EQ(result.summary.frames_by_status.at("lost"), 27);
+  EXPECT_EQ(result.summary.lost_in_holes, 23);
+  EXPECT_EQ(result.summary.FramesReport(), "21 interpolated, 27 lost (23 in holes of more than 1.5 s), 32 tracked");
+  for (int t = 0; t < 80; ++t) {
+    const bool lost = (t >= 40 && t < 63) || t >= 76;
+    EXPECT_EQ(result.track.frame_status[t] == FrameStatus::kLost, lost) << t;
+    EXPECT_EQ(result.track.HasResult(t), !lost) << t;
+    EXPECT_EQ(result.track.joint_sigma.row(t).array().isNaN().all(), lost) << t;
+  }
+}
+
 TEST(TrackSequence, FramesBeforeTheFirstAndAfterTheLastSightAreLost) {
   SynthClip clip = Clip(40, 0);
   const auto hide = [&](int begin, int end) {

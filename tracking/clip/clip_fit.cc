@@ -311,7 +311,7 @@ void ClipFit::FinishWithCeres() {
 
 void ClipFit::Finish(TrackSequenceResult* result) {
   FillTrack(input_, problem_, landmarks_, result);
-  LoseUnseenEnds(problem_, result);
+  LoseUnseenFrames(problem_, result);
   FrameResiduals residuals;
   SummariseCosts(problem_, threads_, &residuals, &summary_);
   SummariseImageTerms(problem_, residuals, &summary_);

@@ -28,6 +28,16 @@ namespace {
 constexpr int kFewLandmarks = 6;
 constexpr int kFewDense = 20;
 
+void Lose(int t, Track* track) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  track->frame_status[t] = FrameStatus::kLost;
+  track->motion.poses.row(t).setConstant(kNaN);
+  track->motion.trans.row(t).setConstant(kNaN);
+  if (track->weak_camera.rows() > 0) track->weak_camera.row(t).setConstant(kNaN);
+  track->joints[t].setConstant(kNaN);
+  track->coco17[t].setConstant(kNaN);
+}
+
 }  // namespace
 
 FrameStatus StatusOf(const FrameData& frame) {
@@ -119,9 +129,9 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
   if (input.dense != nullptr) summary.terms.push_back(dense);
 }
 
-void LoseUnseenEnds(const SequenceProblem& problem, TrackSequenceResult* result) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+void LoseUnseenFrames(const SequenceProblem& problem, TrackSequenceResult* result) {
   Track& track = result->track;
+  TrackSequenceSummary& summary = result->summary;
   const std::vector<int> shots = ShotOfFrames(problem.cut_before);
   const auto is_held = [&](int t) {
     const FrameData& frame = problem.frames[t];
@@ -129,21 +139,19 @@ void LoseUnseenEnds(const SequenceProblem& problem, TrackSequenceResult* result)
            frame.Get<InitialiserTerm>().num_rows() > 0 || !frame.Get<UserCostTerm>().is_empty();
   };
   const int T = track.num_frames();
-  for (int begin = 0, end = 0; begin < T; begin = end) {
-    while (end < T && shots[end] == shots[begin]) ++end;
-    int first = begin, last = end;
-    while (first < end && !is_held(first)) ++first;
-    while (last > first && !is_held(last - 1)) --last;
+  for (int begin = 0, end = 0; begin < T; begin = end) {  // runs of unseen frames, and frames between them
+    end = begin + 1;
+    if (is_held(begin)) continue;
+    while (end < T && shots[end] == shots[begin] && !is_held(end)) ++end;
+    const bool is_hole =
+        begin > 0 && end < T && shots[begin - 1] == shots[begin] && shots[end] == shots[begin];  // seen on both sides
+    if (is_hole && problem.timestamps[end] - problem.timestamps[begin - 1] <= kLongestHole_s) continue;
     for (int t = begin; t < end; ++t) {
-      if ((t >= first && t < last) || track.frame_status[t] == FrameStatus::kLost) continue;
-      --result->summary.frames_by_status[ToString(track.frame_status[t])];
-      ++result->summary.frames_by_status[ToString(FrameStatus::kLost)];
-      track.frame_status[t] = FrameStatus::kLost;
-      track.motion.poses.row(t).setConstant(kNaN);
-      track.motion.trans.row(t).setConstant(kNaN);
-      if (track.weak_camera.rows() > 0) track.weak_camera.row(t).setConstant(kNaN);
-      track.joints[t].setConstant(kNaN);
-      track.coco17[t].setConstant(kNaN);
+      if (track.frame_status[t] == FrameStatus::kLost) continue;
+      --summary.frames_by_status[ToString(track.frame_status[t])];
+      ++summary.frames_by_status[ToString(FrameStatus::kLost)];
+      summary.lost_in_holes += is_hole ? 1 : 0;
+      Lose(t, &track);
     }
   }
 }

@@ -19,8 +19,9 @@ void FillTrack(const TrackSequenceInput& input, const SequenceProblem& problem, 
                TrackSequenceResult* result);
 
 /// Sets frames to lost that only smoothness holds: in each shot those before the first and after the last frame that is
-/// observed, has an initial pose or a user's term. Their values become NaN; the counts of the summary follow.
-void LoseUnseenEnds(const SequenceProblem& problem, TrackSequenceResult* result);
+/// observed, has an initial pose or a user's term; and those between two such frames more than kLongestHole_s apart.
+/// Their values become NaN; the counts of the summary follow, and lost_in_holes.
+void LoseUnseenFrames(const SequenceProblem& problem, TrackSequenceResult* result);
 
 /// Appends the errors of rendered UV, silhouette and part labels to the summary, for those that ran; `residuals` are of
 /// the whole clip (CostsByTerm()).

@@ -23,15 +23,21 @@ std::string WorstStretch::BriefReport() const {
   return text;
 }
 
+std::string TrackSequenceSummary::FramesReport() const {
+  std::ostringstream out;
+  for (const auto& [name, count] : frames_by_status) {
+    if (count > 0) out << (out.tellp() > 0 ? ", " : "") << count << ' ' << name;
+    if (name == ToString(FrameStatus::kLost) && lost_in_holes > 0) {
+      out << " (" << lost_in_holes << " in holes of more than " << kLongestHole_s << " s)";
+    }
+  }
+  return out.str();
+}
+
 std::string TrackSequenceSummary::BriefReport() const {
   std::ostringstream out;
   out << ToString(status) << " after " << iterations << " iterations, cost " << initial_cost << " -> " << final_cost;
-  if (!frames_by_status.empty()) {
-    out << "\nframes:";
-    for (const auto& [name, count] : frames_by_status) {
-      if (count > 0) out << ' ' << count << ' ' << name;
-    }
-  }
+  if (!frames_by_status.empty()) out << "\nframes: " << FramesReport();
   if (reprojection_median_px > 0) {
     out << "\n2D joints: median " << reprojection_median_px << " px, 95 % below " << reprojection_p95_px << " px";
   }

@@ -93,6 +93,11 @@ struct CameraPathSummary {
   std::string why;         ///< the evidence of an estimate, or the reason why there is none
 };
 
+/// Longest time from one sight of a person to the next that smoothness can bridge, seconds. In holes of 1.5 s
+/// root_sigma grows to 0.5 m for a slow dancer and 1 m for a fast one, and limbs are as wrong as those of another pose
+/// (docs/lab/joint_sigma.md).
+inline constexpr double kLongestHole_s = 1.5;
+
 struct TrackSequenceSummary {
   SolveStatus status = SolveStatus::kFailure;
   std::string message;
@@ -121,7 +126,10 @@ struct TrackSequenceSummary {
   GroundSummary ground;
   CameraPathSummary camera_path;
   int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections
+  int lost_in_holes = 0;       ///< of the lost frames those between two sights of one shot
   [[nodiscard]] bool IsUsable() const { return status != SolveStatus::kFailure; }
+  /// "120 tracked, 97 lost (90 in holes of more than 1.5 s)"; empty without frames.
+  [[nodiscard]] std::string FramesReport() const;
   /// A few lines for a terminal.
   [[nodiscard]] std::string BriefReport() const;
 };
