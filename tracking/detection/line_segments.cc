@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/detection/line_segments.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
+
+#include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr int kLargestSide = 1280;  ///< pixels of a sample
+constexpr double kAroundMask = 0.04;
+constexpr double kMinSeenShare = 0.2, kMaxMaskedShare = 0.1;
+constexpr double kNearBorder = 0.008;  ///< of the longer side
+constexpr double kWholeSide = 0.95;    ///< of a side
+constexpr double kStraightPx = 1.5;    ///< that an edge of a bar is off its row or column
+constexpr uint8_t kRestlessLevels = 8;
+constexpr int kRestlessStride = 4;  ///< every 16th pixel says how much moves
+
+using History = std::array<uint8_t, 2 * FrameSamples::kFewestSamples>;
+
+uint8_t MedianOf(History* values, int count) {
+  const auto middle = values->begin() + count / 2;
+  std::nth_element(values->begin(), middle, values->begin() + count);
+  return *middle;
+}
+
+uint8_t DeviationOf(History* values, int count, uint8_t median) {
+  for (int i = 0; i < count; ++i) (*values)[i] = static_cast<uint8_t>(std::abs((*values)[i] - median));
+  return MedianOf(values, count);
+}
+
+/// The values of a pixel: where nobody is, or of all frames if somebody nearly always is.
+class PixelInSamples {
+ public:
+  PixelInSamples(const FrameSamples& samples, std::span<const CoveredPixels> covered)
+      : samples_(samples.samples()), covered_(covered) {}
+  /// Returns true if the pixel is seen often enough.
+  bool Gather(size_t pixel) {
+    count_ = 0;
+    for (size_t i = 0; i < samples_.size(); ++i) {
+      const bool hidden = !covered_.empty() && !covered_[i].empty() && covered_[i][pixel] != 0;
+      if (!hidden) values_[count_++] = samples_[i].grey[pixel];
+    }
+    const bool seen = count_ > 0 && count_ >= kMinSeenShare * static_cast<double>(samples_.size());
+    if (seen) return true;
+    count_ = 0;
+    for (const GreySample& sample : samples_) values_[count_++] = sample.grey[pixel];
+    return false;
+  }
+  [[nodiscard]] History* values() { return &values_; }
+  [[nodiscard]] int count() const { return count_; }
+
+ private:
+  const std::vector<GreySample>& samples_;
+  std::span<const CoveredPixels> covered_;
+  History values_{};
+  int count_ = 0;
+};
+
+bool MostlyMasked(const StillPicture& picture, const LineSegment& segment) {
+  const int steps = 1 + static_cast<int>(segment.length());
+  int masked = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const Eigen::Vector2d at = segment.a + (segment.b - segment.a) * i / steps;
+    const int x = std::clamp(static_cast<int>(std::lround(at.x())), 0, picture.width - 1);
+    const int y = std::clamp(static_cast<int>(std::lround(at.y())), 0, picture.height - 1);
+    masked += picture.people[size_t(y) * picture.width + x] != 0 ? 1 : 0;
+  }
+  return masked > kMaxMaskedShare * (steps + 1);
+}
+
+/// Edges of the picture, and of black bars beside it: both ends near one border, or straight from border to border.
+bool IsFrameOfPicture(const StillPicture& picture, const LineSegment& segment) {
+  const Eigen::Array2d size(picture.width - 1, picture.height - 1);
+  const Eigen::Array2d a = segment.a.array(), b = segment.b.array(),
+                       near = Eigen::Array2d::Constant(kNearBorder * size.maxCoeff());
+  const bool along = ((a < near && b < near) || (a > size - near && b > size - near)).any();
+  const Eigen::Array2d run = (b - a).abs();
+  const bool across = (run.x() < kStraightPx && run.y() > kWholeSide * size.y()) ||
+                      (run.y() < kStraightPx && run.x() > kWholeSide * size.x());
+  return along || across;
+}
+
+size_t NumPixels(const FrameSamples& samples) { return size_t(samples.width()) * samples.height(); }
+
+}  // namespace
+
+void FrameSamples::Add(const Image& frame) {
+  if (samples_.empty()) {
+    BODYLOOM_CHECK(!frame.empty(), "line segments: a frame without pixels");
+    image_width_ = frame.width;
+    image_height_ = frame.height;
+    scale_ = std::max(1.0, std::max(frame.width, frame.height) / double(kLargestSide));
+    width_ = std::max(1, static_cast<int>(std::lround(frame.width / scale_)));
+    height_ = std::max(1, static_cast<int>(std::lround(frame.height / scale_)));
+  }
+  BODYLOOM_CHECK(frame.width == image_width_ && frame.height == image_height_, "line segments: a frame of ",
+                 frame.width, "x", frame.height, ", expected ", image_width_, "x", image_height_);
+  const int index = next_++;
+  if (index % step_ != 0) return;
+  if (samples_.size() == 2 * kFewestSamples) {
+    for (size_t i = 1; i < kFewestSamples; ++i) samples_[i] = std::move(samples_[2 * i]);
+    samples_.resize(kFewestSamples);
+    step_ *= 2;
+  }
+  GreySample& sample = samples_.emplace_back();
+  sample.frame = index;
+  sample.grey.resize(size_t(width_) * height_);
+  // OpenCV does not write to a matrix that it only reads.
+  const cv::Mat colours(frame.height, frame.width, CV_8UC3, const_cast<uint8_t*>(frame.bgr.data()));
+  cv::Mat grey(height_, width_, CV_8UC1, sample.grey.data());
+  if (scale_ == 1) {
+    cv::cvtColor(colours, grey, cv::COLOR_BGR2GRAY);
+    return;
+  }
+  cv::Mat small;
+  cv::resize(colours, small, grey.size(), 0, 0, cv::INTER_AREA);
+  cv::cvtColor(small, grey, cv::COLOR_BGR2GRAY);
+}
+
+void CoverBox(double x0, double y0, double x1, double y1, const FrameSamples& samples, CoveredPixels* covered) {
+  covered->resize(NumPixels(samples), 0);
+  if (!(std::isfinite(x0) && std::isfinite(x1) && std::isfinite(y0) && std::isfinite(y1))) return;
+  const auto small = [&](double v, int size) {
+    return static_cast<int>(std::lround(std::clamp((v + 0.5) / samples.scale(), 0.0, double(size))));
+  };
+  const int left = small(std::min(x0, x1), samples.width()), right = small(std::max(x0, x1), samples.width());
+  for (int y = small(std::min(y0, y1), samples.height()); y < small(std::max(y0, y1), samples.height()); ++y) {
+    std::fill_n(covered->begin() + std::ptrdiff_t(y) * samples.width() + left, right - left, uint8_t{1});
+  }
+}
+
+void CoverMask(const LabelImage& mask, const FrameSamples& samples, CoveredPixels* covered) {
+  covered->resize(NumPixels(samples), 0);
+  cv::Mat inside(samples.height(), samples.width(), CV_8UC1, cv::Scalar(0)), wide;
+  const double scale = samples.scale();
+  const auto frame_pixel = [&](int v) { return static_cast<int>(std::lround(scale * (v + 0.5) - 0.5)); };
+  for (int y = 0; y < samples.height(); ++y) {
+    const int row = frame_pixel(y);
+    if (row < mask.y_begin || row >= mask.y_begin + mask.height) continue;
+    for (int x = 0; x < samples.width(); ++x) inside.at<uint8_t>(y, x) = mask.At(frame_pixel(x), row) != 0 ? 1 : 0;
+  }
+  const int margin = 1 + static_cast<int>(kAroundMask * std::max(mask.width, mask.height) / scale);
+  cv::dilate(inside, wide, cv::getStructuringElement(cv::MORPH_RECT, {2 * margin + 1, 2 * margin + 1}));
+  cv::Mat all(samples.height(), samples.width(), CV_8UC1, covered->data());
+  all |= wide;
+}
+
+StillPicture MedianPicture(const FrameSamples& samples, std::span<const CoveredPixels> covered, int num_threads) {
+  const size_t pixels = NumPixels(samples);
+  BODYLOOM_CHECK(covered.empty() || covered.size() == samples.samples().size(), "line segments: people of ",
+                 covered.size(), " frames, expected ", samples.samples().size());
+  for (const CoveredPixels& people : covered) {
+    BODYLOOM_CHECK(people.empty() || people.size() == pixels, "line segments: people in ", people.size(),
+                   " pixels, expected ", pixels);
+  }
+  StillPicture picture{.width = samples.width(), .height = samples.height(), .scale = samples.scale()};
+  if (pixels == 0) return picture;
+  picture.grey.resize(pixels);
+  picture.people.assign(pixels, 0);
+  std::vector<int> restless(picture.height, 0), looked_at(picture.height, 0);
+  ParallelFor(picture.height, num_threads, [&](int y) {
+    PixelInSamples pixel(samples, covered);
+    for (int x = 0; x < picture.width; ++x) {
+      const size_t i = size_t(y) * picture.width + x;
+      picture.people[i] = pixel.Gather(i) ? 0 : 1;
+      picture.grey[i] = MedianOf(pixel.values(), pixel.count());
+      if (picture.people[i] != 0 || x % kRestlessStride != 0 || y % kRestlessStride != 0) continue;
+      ++looked_at[y];
+      restless[y] += DeviationOf(pixel.values(), pixel.count(), picture.grey[i]) > kRestlessLevels ? 1 : 0;
+    }
+  });
+  double moving = 0, all = 0;
+  for (int y = 0; y < picture.height; ++y) moving += restless[y], all += looked_at[y];
+  picture.restless_share = all > 0 ? moving / all : 0;
+  return picture;
+}
+
+std::vector<LineSegment> FindLineSegments(const StillPicture& picture, double min_share) {
+  std::vector<LineSegment> segments;
+  if (picture.grey.empty()) return segments;
+  const cv::Mat grey(picture.height, picture.width, CV_8UC1, const_cast<uint8_t*>(picture.grey.data()));
+  std::vector<cv::Vec4f> found;
+  cv::createLineSegmentDetector(cv::LSD_REFINE_STD)->detect(grey, found);
+  const double shortest = min_share * std::max(picture.width, picture.height);
+  for (const cv::Vec4f& ends : found) {
+    LineSegment segment{{ends[0], ends[1]}, {ends[2], ends[3]}};
+    if (!(segment.length() >= shortest) || MostlyMasked(picture, segment) || IsFrameOfPicture(picture, segment)) {
+      continue;
+    }
+    for (Eigen::Vector2d* end : {&segment.a, &segment.b}) {
+      *end = picture.scale * (*end + Eigen::Vector2d(0.5, 0.5)) - Eigen::Vector2d(0.5, 0.5);
+    }
+    segments.push_back(segment);
+  }
+  return segments;
+}
+
+}  // namespace bodyloom
