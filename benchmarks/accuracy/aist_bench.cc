@@ -14,8 +14,12 @@
 ///   reference      keypoints3d_optim, made from all nine cameras (the detections' noise floor)
 ///   true angles    the body posed with the data set's own joint rotations, mean shape (what the difference between
 ///                  COCO's landmarks of that body and this one costs)
+/// Columns from room_g_mpjpe_mm to balance_outside_percent are of the room that the track states
+/// (data_tools/evaluation/room_errors.h, room_physics.h); shank_ratio is the mean of both shanks' bone_ratio. Limits
+/// state no room.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -26,6 +30,7 @@
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/evaluation/aist_evaluation.h"
 #include "data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/room_physics.h"
 #include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/observations/load_cameras.h"
@@ -47,11 +52,34 @@ const std::vector<std::string> kEvaluated = {"pa_mpjpe_mm",        "pa_over_120_
                                              "limb_angle_err_deg", "root_rotation_err_deg", "root_depth_err_mm",
                                              "jitter_ms3",         "gt_jitter_ms3"};
 
+const std::vector<std::string> kEvaluatedRoom = {
+    "room_g_mpjpe_mm",     "room_w_mpjpe_mm",      "room_wa_mpjpe_mm",       "tilt_deg",
+    "ankle_height_err_mm", "ankle_height_bias_mm", "knee_bias_deg",          "shank_ratio",
+    "lowest_point_mm",     "hover_percent",        "balance_outside_percent"};
+
+/// Adds the mean ratio of the shanks' lengths to the true ones, where the room was measured.
+void AddShankRatio(Evaluation* evaluation) {
+  for (const EvaluationBreakdown& breakdown : evaluation->breakdowns) {
+    if (breakdown.name != "bone_ratio") continue;
+    double sum = 0;
+    for (size_t i = 0; i < breakdown.labels.size(); ++i) {
+      if (breakdown.labels[i].ends_with(" shank")) sum += breakdown.values[i];
+    }
+    evaluation->Add("shank_ratio", sum / 2, "length of the shanks / true length, limbs scaled to the truth's sum");
+    return;
+  }
+}
+
 std::vector<double> Evaluated(const Evaluation& evaluation) {
   std::vector<double> values;
-  values.reserve(kEvaluated.size());
+  values.reserve(kEvaluated.size() + kEvaluatedRoom.size());
   for (const std::string& name : kEvaluated) {
     values.push_back(evaluation.values.empty() ? kNotMeasured : evaluation.Value(name));
+  }
+  for (const std::string& name : kEvaluatedRoom) {
+    const auto found = std::find_if(evaluation.values.begin(), evaluation.values.end(),
+                                    [&](const EvaluationValue& value) { return value.name == name; });
+    values.push_back(found == evaluation.values.end() ? kNotMeasured : found->value);
   }
   return values;
 }
@@ -135,7 +163,10 @@ BenchRow TrackAndScore(const Setting& setting, const MultiViewClip& clip, const 
   WriteTrack(track_path, result.track);
   const double file_s = watch.seconds();
 
-  const Evaluation evaluation = EvaluateAist(ReadTrack(track_path), clip, setting.view);
+  const Track written = ReadTrack(track_path);
+  Evaluation evaluation = EvaluateAist(written, clip, setting.view);
+  AddShankRatio(&evaluation);
+  if (written.world) AddRoomPhysics(MeasureRoomPhysics(written, BuiltinBody(), setting.threads), &evaluation);
   BenchRow row;
   row.group = setting.knowledge == CameraKnowledge::kKnown          ? "known focal length"
               : setting.knowledge == CameraKnowledge::kUnknownFocal ? "unknown focal length"
@@ -188,6 +219,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   report.command = command;
   report.label_columns = {"clip", "camera"};
   report.value_columns = kEvaluated;
+  report.value_columns.insert(report.value_columns.end(), kEvaluatedRoom.begin(), kEvaluatedRoom.end());
   for (const char* name : {"focal_err_percent", "iterations", "frames_without_result", "track_s", "file_s"}) {
     report.value_columns.emplace_back(name);
   }
