@@ -190,7 +190,7 @@ std::string RoomPhysics::BriefReport() const {
     std::snprintf(text, sizeof(text), ", contacts slide %.2f m/s", contact_slide_mps);
     line += text;
   }
-  if (!std::isnan(balance_outside_share)) {
+  if (balance_measured_share >= 0.1) {
     std::snprintf(text, sizeof(text), ", off balance in %.0f %% of the slow frames", 100 * balance_outside_share);
     line += text;
   }
@@ -210,6 +210,7 @@ RoomPhysics MeasureRoomPhysics(const Track& track, const BodyModel& body, int nu
   physics.frames = static_cast<int>(heights.size());
   physics.contact_slide_mps = Percentile(surface.slides(), 50);
   const Balance balance = MeasureBalance(surface.supports());
+  physics.balance_measured_share = physics.frames > 0 ? static_cast<double>(balance.frames) / physics.frames : 0;
   physics.balance_outside_share = balance.outside_share;
   physics.balance_p95_m = balance.outside_p95_m;
   physics.lean_median_deg = Percentile(surface.leans(), 50);
@@ -250,8 +251,10 @@ void AddRoomPhysics(const RoomPhysics& physics, Evaluation* evaluation) {
       "95th percentile of its depth below the ground");
   add("ground_penetration_percent", 100 * physics.penetration_share, "frames in which it is below 2 cm");
   add("contact_slide_mps", physics.contact_slide_mps, "median speed along the ground of what touches it, m/s");
+  add("balance_measured_percent", 100 * physics.balance_measured_share,
+      "slow frames on the ground, whose balance is measured");
   add("balance_outside_percent", 100 * physics.balance_outside_share,
-      "slow frames whose zero-moment point is 5 cm outside what supports the body");
+      "of these, those whose zero-moment point is 5 cm outside what supports the body");
   add("balance_p95_mm", kMmPerMetre * physics.balance_p95_m, "95th percentile of how far it is outside");
   add("lean_median_deg", physics.lean_median_deg, "median angle of the trunk to the vertical while on both feet");
 }

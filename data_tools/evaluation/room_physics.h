@@ -15,10 +15,10 @@
 ///   ground_penetration_percent   frames with h below −2 cm
 ///   contact_slide_mps            median over pairs of consecutive frames of the median horizontal speed of vertices
 ///                                within 2 cm of the ground in both
-///   balance_outside_percent      of the slow frames that touch the ground (geometry/body/balance.h),
-///                                those whose zero-moment point is more than 5 cm outside the widened hull of the
-///                                vertices up to 4 cm high
-///   balance_p95_mm               95th percentile of its distance outside, of the slow frames
+///   balance_measured_percent     frames whose balance is measured: slow ones on the ground (geometry/body/balance.h)
+///   balance_outside_percent      of these, those whose zero-moment point is more than 5 cm outside the widened hull of
+///                                the vertices up to 4 cm high
+///   balance_p95_mm               95th percentile of its distance outside, of the same frames
 ///   lean_median_deg              median angle between the vertical and the line from pelvis to neck over frames in
 ///                                which the person stands on both feet: both are in contact, nothing above the legs is,
 ///                                and both knees are higher than 25 cm. 3° for the built-in body upright
@@ -39,10 +39,11 @@ struct RoomPhysics {
   double lowest_point_m = 0;
   double penetration_p95_m = 0, penetration_share = 0;
   double contact_slide_mps = 0;
-  double balance_outside_share = 0, balance_p95_m = 0;
+  double balance_measured_share = 0, balance_outside_share = 0, balance_p95_m = 0;
   double lean_median_deg = 0;
   /// "on the ground or in flight in 97 % of the frames, within 12 mm below it in 95 %, contacts slide 0.01 m/s, off
-  /// balance in 3 % of the slow frames, leans 4 deg on both feet", without what was not measured; empty without frames.
+  /// balance in 3 % of the slow frames, leans 4 deg on both feet", without what was not measured, and without balance
+  /// when fewer than 10 % of the frames are slow; empty without frames.
   [[nodiscard]] std::string BriefReport() const;
 };
 

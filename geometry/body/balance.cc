@@ -3,6 +3,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -17,7 +18,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kHalfWindowS = 0.15, kSlowMps2 = 1.5, kHullMarginM = 0.04, kOutsideM = 0.05;
+constexpr double kHalfWindowS = 0.15, kFurthestNeighbourS = 0.25, kSlowMps2 = 1.5, kHullMarginM = 0.04,
+                 kOutsideM = 0.05;
 
 /// Above 0 where the path from a over b to c turns left.
 double TurnAt(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
@@ -25,22 +27,28 @@ double TurnAt(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return ab.x() * bc.y() - ab.y() * bc.x();
 }
 
-/// Frames [first, last] around i without a gap, at most half a window away.
+/// Frames [first, last] around i without a gap, at most half a window away, and its neighbours.
 std::pair<size_t, size_t> WindowAround(const std::vector<SupportedFrame>& frames, size_t i) {
-  constexpr double kHalf = kHalfWindowS + 1e-9;  // rounding of timestamps
   size_t first = i, last = i;
-  while (first > 0 && frames[first].continues && frames[i].seconds - frames[first - 1].seconds <= kHalf) --first;
-  while (last + 1 < frames.size() && frames[last + 1].continues &&
-         frames[last + 1].seconds - frames[i].seconds <= kHalf)
-    ++last;
+  const auto belongs = [&](size_t other, bool is_neighbour) {
+    const double apart = std::abs(frames[other].seconds - frames[i].seconds) - 1e-9;  // rounding of timestamps
+    return apart <= (is_neighbour ? kFurthestNeighbourS : kHalfWindowS);
+  };
+  while (first > 0 && frames[first].continues && belongs(first - 1, first == i)) --first;
+  while (last + 1 < frames.size() && frames[last + 1].continues && belongs(last + 1, last == i)) ++last;
   return {first, last};
 }
 
-/// True if neither the clip's ends nor a gap cut the window short.
-bool IsWhole(const std::vector<SupportedFrame>& frames, const std::pair<size_t, size_t>& window) {
+/// True if the window reaches to both sides, and neither the clip's ends nor a gap cut it short: a frame follows it on
+/// each side, or it is as long as it may be.
+bool IsWhole(const std::vector<SupportedFrame>& frames, size_t i, const std::pair<size_t, size_t>& window) {
   const auto [first, last] = window;
-  return last - first >= 2 && first > 0 && frames[first].continues && last + 1 < frames.size() &&
-         frames[last + 1].continues;
+  const double rounding = 1e-9;
+  const bool from =
+      frames[i].seconds - frames[first].seconds >= kHalfWindowS - rounding || (first > 0 && frames[first].continues);
+  const bool to = frames[last].seconds - frames[i].seconds >= kHalfWindowS - rounding ||
+                  (last + 1 < frames.size() && frames[last + 1].continues);
+  return first < i && i < last && from && to;
 }
 
 struct Motion2 {
@@ -103,7 +111,7 @@ Balance MeasureBalance(const std::vector<SupportedFrame>& frames) {
   for (size_t i = 0; i < frames.size(); ++i) {
     if (frames[i].contacts.empty()) continue;
     const auto window = WindowAround(frames, i);
-    if (!IsWhole(frames, window)) continue;
+    if (!IsWhole(frames, i, window)) continue;
     const Motion2 motion = FitParabola(frames, i, window);
     if (!(motion.acceleration.norm() < kSlowMps2)) continue;
     const Vector2d point = ZeroMomentPoint(motion.place, motion.acceleration);

@@ -2,10 +2,11 @@
 /// Balance of a body in a clip: its zero-moment point against what supports it.
 ///
 /// The centre of mass c and its acceleration a are those of the parabola fitted by least squares to the places of c
-/// within 0.15 s before and after a frame. A frame is measured if that window has no gap and at least three frames, the
-/// body touches the ground, and it is slow: |a| < 1.5 m/s². Faster ones are left out, because the zero-moment point
-/// leaves out angular momentum (on recorded dances it is right to a few centimetres in slow frames and off by
-/// decimetres in fast ones).
+/// within 0.15 s before and after a frame, and at least at its two neighbours (up to 0.25 s away: clips of 4 frames a
+/// second and more). A frame is measured if neither a gap nor the clip's end cuts that window short, the body touches
+/// the ground, and it is slow: |a| < 1.5 m/s². Faster ones are left out, because the zero-moment point leaves out
+/// angular momentum (on recorded dances it is right to a few centimetres in slow frames and off by decimetres in fast
+/// ones).
 ///   d = max(0, distance of p from the convex hull of the contacts − 4 cm)
 /// with p of geometry/body/centre_of_mass.h; 0 inside. The 4 cm are what a sole is wider than its lowest vertices.
 #pragma once

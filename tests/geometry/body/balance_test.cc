@@ -62,7 +62,7 @@ TEST(DistanceOutside, IsZeroInsideAndGrowsFromTheNearestEdgeOrCorner) {
 
 TEST(Balance, IsTheDistanceOfTheCentreFromTheFeetAtRest) {
   const Balance upright = MeasureBalance(Clip(60, [](double) { return Vector3d(0.02, 1, 0); }));
-  EXPECT_EQ(upright.frames, 60 - 2 * 5) << "the first and the last 0.15 s have no whole window";
+  EXPECT_EQ(upright.frames, 60 - 2 * 5) << "0.15 s are 4.5 frames, and a window ends where another frame follows";
   EXPECT_EQ(upright.outside_share, 0);
   EXPECT_NEAR(upright.outside_p95_m, 0, 1e-12);
   // 30 cm outside the feet: less the 4 cm of the widened hull.
@@ -92,6 +92,17 @@ TEST(Balance, ABallThatFallsIsNoStandingBody) {
   // The same path slowed down to 1.4 m/s² is measured: 9.81 is what the fit found, not a failed one.
   const auto sink = [](double t) { return Vector3d(2, 5 - 0.5 * 1.4 * t * t, 0); };
   EXPECT_EQ(MeasureBalance(Clip(30, sink)).frames, 20);
+}
+
+TEST(Balance, SlowClipsOfFewFramesASecondAreMeasuredByTheirNeighbours) {
+  const auto at = [](double rate) {
+    std::vector<SupportedFrame> frames = Clip(12, [](double) { return Vector3d(0.4, 1, 0); });
+    for (size_t t = 0; t < frames.size(); ++t) frames[t].seconds = static_cast<double>(t) / rate;
+    return MeasureBalance(frames);
+  };
+  EXPECT_EQ(at(5).frames, 10);
+  EXPECT_NEAR(at(5).outside_p95_m, 0.26, 1e-12);
+  EXPECT_EQ(at(3).frames, 0);
 }
 
 TEST(Balance, GapsAndFramesWithoutContactAreLeftOut) {
