@@ -128,6 +128,18 @@ void AddSolveOptions(CLI::App& app, TrackSettings* request) {
          "--no-ground", [&s] { s.ground = GroundOptions::Off(); },
          "look for neither the vertical nor the ground that feet stand on")
       ->group(kSolve);
+  app.add_flag_callback(
+         "--no-contacts", [&s] { s.ground.surface_weight = 0; },
+         "let the surface be below the ground or hover above it")
+      ->group(kSolve);
+  app.add_flag_callback(
+         "--no-balance", [&s] { s.ground.balance_weight = 0; },
+         "let the centre of mass be anywhere above what touches the ground")
+      ->group(kSolve);
+  app.add_flag_callback(
+         "--no-lines", [request] { request->use_lines = false; },
+         "do not look for the vertical and the focal length in the video's straight lines")
+      ->group(kSolve);
   app.add_option("--rendered-weight", s.rendered_uv.weight,
                  "of dense keypoints whose noise lies in UV, compared in UV with the rendered body (lambda_r of the "
                  "motion paper); 0: reprojection alone")
@@ -141,9 +153,10 @@ void AddSolveOptions(CLI::App& app, TrackSettings* request) {
       ->type_name("W")
       ->check(Quiet(CLI::Range(0.0, 1e6)))
       ->capture_default_str();
-  app.add_option("--straight-knees", request->straight_knees,
-                 Concatenate("how strongly knees are kept straight, 1/rad, 0: not at all (default: ",
-                             kBlazePoseStraightKnees, " for BlazePose's joints, which every raw video has, else 0)"))
+  app.add_option(
+         "--straight-knees", request->straight_knees,
+         Concatenate("how strongly knees are kept straight, 1/rad, 0: not at all (default: ", kBlazePoseStraightKnees,
+                     " for BlazePose's joints, which every raw video has, else ", kStraightKnees, ")"))
       ->group(kSolve)
       ->type_name("W")
       ->check(Quiet(CLI::Range(0.0, 100.0)));

@@ -147,6 +147,7 @@ DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCall
   Prefetcher<TimedFrame> frames(
       std::numeric_limits<int64_t>::max(), [&](int64_t) { return NextFrame(&source); }, kFramesAhead);
   for (TimedFrame frame = frames.Take(); !frame.image.empty(); frame = frames.Take()) {
+    if (request.keep_samples) clip.samples.Add(frame.image);
     detector.Add(std::move(frame));
     callbacks.Update("detect", num_frames > 0 ? std::min(1.0, clip.people.frames.size() / double(num_frames)) : 0);
   }

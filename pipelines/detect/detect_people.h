@@ -11,6 +11,7 @@
 #include "geometry/scene/observations.h"
 #include "render/image/image.h"
 #include "tracking/detection/frame_detector.h"
+#include "tracking/detection/line_segments.h"
 
 namespace bodyloom {
 
@@ -51,12 +52,14 @@ struct DetectPeopleRequest {
   /// Detection rate while everybody moves slowly, frames per second; other frames are interpolated (FillBetween()),
   /// without masks. 0: all frames.
   double detect_rate = 0;
+  bool keep_samples = false;  ///< DetectedClip::samples
 };
 
 struct DetectedClip {
   PeopleSequence people;                         ///< the detector's convention; identities −1
   std::vector<std::vector<PackedLabels>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
   PeopleDetectorSummary detector;
+  FrameSamples samples;  ///< of the video, for the lines of the room; empty unless asked for
 };
 
 /// Throws RequestError when the detector's ONNX files contradict each other or are missing.

@@ -14,6 +14,7 @@
 #include "geometry/scene/observations.h"
 #include "pipelines/files.h"
 #include "pipelines/track/detected_people.h"
+#include "pipelines/track/picture_lines.h"
 #include "pipelines/track/scene_inputs.h"
 #include "render/photo_avatar/parts_in_image.h"
 #include "render/photo_avatar/photo_person_builder.h"
@@ -49,6 +50,8 @@ FittedPhoto FitPhoto(const PhotoFitSettings& fit, const std::string& path, const
   TrackSequenceInput input = scene.ForTracker();
   input.keypoints = &seen.keypoints;
   input.part_labels = &*seen.mask;
+  const PictureVertical lines = VerticalOfClip(request, clip, scene);
+  UsePictureVertical(lines, scene.camera_knowledge, &input);
   TrackSequenceOptions options = request.solve;
   options.camera_knowledge = scene.camera_knowledge;
   options.straight_knees_weight = StraightKneesWeight(request, seen.keypoints.convention);

@@ -10,6 +10,7 @@
 #include "geometry/base/parallel.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/track/clip_camera_path.h"
+#include "pipelines/track/picture_lines.h"
 #include "pipelines/video/track_video.h"
 
 namespace bodyloom {
@@ -56,7 +57,7 @@ std::vector<int> ChoosePeople(const TrackPeopleRequest& request, const DetectedC
 }
 
 /// Tracks them; progress is that of all fits.
-TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& scene,
+TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& scene, const PictureVertical& lines,
                         const std::vector<DetectedObservations>& seen,
                         const std::vector<std::vector<CameraPose>>& cameras, const PipelineCallbacks& callbacks) {
   std::vector<TrackSequenceInput> inputs;
@@ -64,6 +65,7 @@ TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& sc
     TrackSequenceInput& input = inputs.emplace_back(scene.ForTracker());
     input.keypoints = &person.keypoints;
     input.part_labels = person.mask ? &*person.mask : nullptr;
+    UsePictureVertical(lines, scene.camera_knowledge, &input);
     if (cameras.empty()) continue;
     input.camera_from_scene = &cameras[inputs.size() - 1];
     input.camera_scale_m = CameraScaleOf(request.track, *scene.camera_path);
@@ -143,7 +145,8 @@ TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneI
                                 tracked.seen[i].keypoints.timestamps, &report->camera_path));
   }
   callbacks.Begin(Concatenate("tracking ", count, count == 1 ? " person" : " people"));
-  tracked.result = Solve(request, scene, tracked.seen, cameras, callbacks);
+  const PictureVertical lines = VerticalOfClip(request.track, people.clip, scene);
+  tracked.result = Solve(request, scene, lines, tracked.seen, cameras, callbacks);
   report->scene = tracked.result.summary.scene;
   for (size_t i = 0; i < count; ++i) {
     TrackedPerson& person = report->people[i];

@@ -26,6 +26,7 @@ DetectPeopleRequest DetectionOf(const TrackSettings& request, int max_people) {
   detect.detector.blazepose.masks = DetectsMasks(request);
   detect.detector.blazepose.max_people = max_people;
   detect.detect_rate = request.detect_rate;
+  detect.keep_samples = request.use_lines;
   return detect;
 }
 

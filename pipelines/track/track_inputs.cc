@@ -14,6 +14,7 @@
 #include "geometry/base/check.h"
 #include "pipelines/files.h"
 #include "pipelines/track/detected_people.h"
+#include "pipelines/track/picture_lines.h"
 #include "tracking/detection/iuv_to_dense.h"
 #include "tracking/initialise/swap_repair.h"
 #include "tracking/lifter/given_landmarks.h"
@@ -130,6 +131,8 @@ void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& cal
   DetectedObservations seen = ObservationsOf(clip, person, WholeClip(clip), request, *inputs);
   inputs->keypoints = std::move(seen.keypoints);
   inputs->part_labels = std::move(seen.mask);
+  UseFocal(request, &inputs->camera.camera);  // the lines need it
+  inputs->picture_vertical = VerticalOfClip(request, clip, *inputs);
 }
 
 }  // namespace
@@ -157,6 +160,7 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   if (!lifted.empty()) input.lifted = &lifted;
   if (!camera_from_scene.empty()) input.camera_from_scene = &camera_from_scene;
   input.camera_scale_m = camera_scale_m;
+  if (picture_vertical) UsePictureVertical(*picture_vertical, camera_knowledge, &input);
   return input;
 }
 
@@ -192,6 +196,9 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
                                          "--image-size"));
   }
   UseFocal(request, &camera);
+  if (!request.video.empty() && !DetectsPeople(request)) {
+    inputs.picture_vertical = VerticalOfVideo(request, inputs.keypoints ? &*inputs.keypoints : nullptr, inputs);
+  }
   if (inputs.camera_path) {
     inputs.camera_from_scene =
         CamerasAt(request, *inputs.camera_path, inputs.timestamps(), inputs.timestamps(), &inputs.camera_path_report);

@@ -14,6 +14,7 @@
 #include "pipelines/track/scene_inputs.h"
 #include "pipelines/track/track_request.h"
 #include "tracking/lifter/lifter_reading.h"
+#include "tracking/room/picture_vertical.h"
 
 namespace bodyloom {
 
@@ -29,6 +30,7 @@ struct TrackInputs : SceneInputs {
   std::vector<LiftedFrame>
       lifted;  ///< the lifter's landmarks, replaced by those of the initialiser in frames where it gives some
   std::optional<Track> reference;
+  std::optional<PictureVertical> picture_vertical;  ///< with a video
 
   /// With only part labels given, keypoints are those derived from the labels.
   [[nodiscard]] int num_frames() const { return keypoints ? keypoints->num_frames() : dense->num_frames(); }

@@ -16,7 +16,7 @@ CameraKnowledge CameraKnowledgeOf(const SceneRequest& request, bool has_intrinsi
 }
 
 double StraightKneesWeight(const TrackSettings& settings, const std::string& convention) {
-  return settings.straight_knees.value_or(convention == MediaPipe33().name ? kBlazePoseStraightKnees : 0);
+  return settings.straight_knees.value_or(convention == MediaPipe33().name ? kBlazePoseStraightKnees : kStraightKnees);
 }
 
 bool DetectsPeople(const TrackRequest& request) {

@@ -30,6 +30,7 @@ struct SceneRequest {
   double camera_scale_m = 0;   ///< metres per unit of the path; 0: the file's, else estimated from the person
   int camera_path_first = -1;  ///< index of the clip's first frame in the path (PlaceInTime)
   double camera_path_fps = 0;  ///< frame rate of the path's numbered frames; 0: the clip's
+  bool use_lines = true;       ///< the picture's straight lines tell the vertical (tracking/room/picture_vertical.h)
   int image_width = 0, image_height = 0;  ///< used if neither camera, video nor detections give it
 };
 
@@ -46,7 +47,7 @@ struct DetectionSettings {
 /// Settings common to tracking one person and everybody in a video.
 struct TrackSettings : SceneRequest, DetectionSettings {
   TrackSequenceOptions solve;            ///< its straight_knees_weight is StraightKneesWeight()
-  std::optional<double> straight_knees;  ///< 1/rad; none: kBlazePoseStraightKnees for BlazePose's joints, else 0
+  std::optional<double> straight_knees;  ///< 1/rad; none: StraightKneesWeight()'s own
 };
 
 /// Request for one person's track. People are detected in the video if no observations are given.
@@ -86,9 +87,9 @@ bool DetectsMasks(const DetectionSettings& settings);
 /// Returns true if 2D joints are derived from the part labels, as no other observations were given.
 bool ReadsJointsOffLabels(const TrackRequest& request);
 
-/// Weight of the straight-knees term for BlazePose's joints, 1/rad, whose hips lie 4 cm lower than other detectors'.
-/// Determined on AIST++ (docs/lab/pose_detector.md).
-inline constexpr double kBlazePoseStraightKnees = 3;
+/// Weight of the straight-knees term, 1/rad, and that for BlazePose's joints, whose hips lie 4 cm lower than other
+/// detectors'. Determined on AIST++ (docs/lab/world.md, docs/lab/pose_detector.md).
+inline constexpr double kStraightKnees = 2, kBlazePoseStraightKnees = 3;
 
 /// TrackSequenceOptions::straight_knees_weight for joints of that convention (KeypointSequence::convention).
 double StraightKneesWeight(const TrackSettings& settings, const std::string& convention);

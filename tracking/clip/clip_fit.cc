@@ -17,6 +17,7 @@
 #include "tracking/clip/term_kinds.h"
 #include "tracking/clip/track_plan.h"
 #include "tracking/clip/track_result.h"
+#include "tracking/clip/turn_to_vertical.h"
 #include "tracking/clip/uncertainty.h"
 #include "tracking/initialise/ground_plane.h"
 #include "tracking/initialise/initial_states.h"
@@ -31,6 +32,7 @@
 #include "tracking/solvers/term_costs.h"
 #include "tracking/terms/dense/dense.h"
 #include "tracking/terms/observability.h"
+#include "tracking/terms/surface_contact/clip_contacts.h"
 
 namespace bodyloom {
 namespace {
@@ -106,7 +108,7 @@ void ClipFit::SetUpProblem() {
   landmarks_ = FindObservedLandmarks(model, input_.keypoints, num_betas);
   const std::vector<int> active =
       FindActiveJoints(model, landmarks_, input_.dense != nullptr || input_.part_labels != nullptr,
-                       options_.skip_unneeded, options_.user_terms);
+                       options_.skip_unneeded, SeeksContacts(input_, options_), options_.user_terms);
   const Camera camera = StartCamera(input_, options_);
   problem_.layout = FrameLayout::Make(model, options_.camera_knowledge, camera, active, num_betas);
   problem_.timestamps = *ExtentOf(input_).timestamps;
@@ -120,13 +122,17 @@ void ClipFit::SetUpProblem() {
 
 bool ClipFit::FindStart() {
   if (options_.progress && !options_.progress({"initialise", 0.0, 0.0})) summary_.status = SolveStatus::kStopped;
-  const InitialStates initial = FindInitialStates(input_, joints_, problem_.layout, options_, &lifted_);
+  InitialStates initial = FindInitialStates(input_, joints_, problem_.layout, options_, &lifted_);
   if (initial.states.empty()) {
     summary_.message =
         "no frame shows enough of the body to start from: a shoulder and a hip are needed, with some confidence";
     return false;
   }
-  problem_.states = initial.states;
+  if (options_.ground.use_up) {
+    const double log_sigma = problem_.layout.focal_column >= 0 ? problem_.log_focal_sigma : 0;
+    TurnToVertical(input_, {std::exp(problem_.log_focal), log_sigma}, problem_.cut_before, &lifted_, &initial.states);
+  }
+  problem_.states = std::move(initial.states);
   problem_.betas = initial.betas;
   problem_.shape_prior.mean = initial.betas;
   clock_.Record("initialise");

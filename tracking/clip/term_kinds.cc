@@ -5,6 +5,7 @@
 
 #include "tracking/problem/track_summary.h"
 #include "tracking/problem/user_cost.h"
+#include "tracking/terms/balance/clip_balance.h"
 #include "tracking/terms/dense/dense.h"
 #include "tracking/terms/ground_contact/clip_ground.h"
 #include "tracking/terms/ground_contact/ground_contact.h"
@@ -16,6 +17,7 @@
 #include "tracking/terms/pose_prior/pose_prior.h"
 #include "tracking/terms/rendered_uv/rendered_uv.h"
 #include "tracking/terms/straight_knees.h"
+#include "tracking/terms/surface_contact/clip_contacts.h"
 #include "tracking/terms/upright.h"
 
 namespace bodyloom {
@@ -25,6 +27,7 @@ std::span<const TermKind> TermKinds() {
       {PlanLandmarks, MakeLandmarkTerms},      {PlanDense, MakeDenseTerms},
       {PlanRenderedUv, MakeDenseRounds},       {PlanPartLabels, MakePartLabelRounds},
       {PlanLifted, MakeLiftedPoseTerms},       {PlanGround, MakeClipGround},
+      {PlanSurfaceContact, MakeClipContacts},  {PlanBalance, MakeClipBalance},
       {PlanPosePrior, MakePosePriorTerms},     {PlanJointLimits, MakeJointLimitTerms},
       {PlanUpright, MakeUprightTerms},         {PlanStraightKnees, MakeStraightKneesTerms},
       {PlanInitialiser, MakeInitialiserTerms}, {PlanUserTerms, MakeUserTerms},

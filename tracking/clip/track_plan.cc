@@ -6,9 +6,20 @@
 
 #include "tracking/clip/term_kinds.h"
 #include "tracking/initialise/initial_states.h"
+#include "tracking/room/picture_vertical.h"
 #include "tracking/terms/observability.h"
 
 namespace bodyloom {
+namespace {
+
+std::string WhyNoPictureVertical(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  if (!options.ground.use_up) return "no vertical is looked for";
+  if (input.ground != nullptr) return "the vertical is given";
+  if (input.picture_vertical == nullptr) return "no video";
+  return input.picture_vertical->found ? "" : input.picture_vertical->why;
+}
+
+}  // namespace
 
 std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   std::vector<PlanEntry> plan;
@@ -31,7 +42,9 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   if (options.velocity_weight > 0) add("velocities", true, "cost something (paper A's L_t), beside accelerations");
   const bool surface = input.dense != nullptr || input.part_labels != nullptr;
   const ObservedLandmarks landmarks = FindObservedLandmarks(model, input.keypoints, 0);
-  const size_t active = FindActiveJoints(model, landmarks, surface, options.skip_unneeded, options.user_terms).size();
+  const size_t active = FindActiveJoints(model, landmarks, surface, options.skip_unneeded,
+                                         SeeksContacts(input, options), options.user_terms)
+                            .size();
   const std::string joints = std::to_string(active) + " of " + std::to_string(model.num_joints());
   add("joint rotations", true, joints + " joints are estimated");
   if (active < static_cast<size_t>(model.num_joints())) {
@@ -44,8 +57,12 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
   add("focal length", options.camera_knowledge == CameraKnowledge::kUnknownFocal,
       options.camera_knowledge == CameraKnowledge::kKnown  ? "known"
       : options.camera_knowledge == CameraKnowledge::kWeak ? "weak perspective has none"
-      : input.focal_prior                                  ? "estimated with the clip, near that of its lens"
-                                                           : "estimated with the clip");
+      : input.picture_vertical != nullptr && input.picture_vertical->has_focal
+          ? "estimated with the clip, near that of the lines"
+      : input.focal_prior ? "estimated with the clip, near that of its lens"
+                          : "estimated with the clip");
+  const std::string no_lines = WhyNoPictureVertical(input, options);
+  add("vertical from lines", no_lines.empty(), no_lines.empty() ? input.picture_vertical->BriefReport() : no_lines);
   add("uncertainty", options.estimate_uncertainty, options.estimate_uncertainty ? "per joint" : "switched off");
   return plan;
 }

@@ -31,7 +31,7 @@ LiveSetup::LiveSetup(const LiveTrackerInput& given, const LiveTrackerOptions& ch
   names.names = input.landmarks;
   if (!input.landmarks.empty()) landmarks = FindObservedLandmarks(model, &names, num_betas);
   const std::vector<int> active =
-      FindActiveJoints(model, landmarks, input.dense, options.solve.skip_unneeded, options.solve.user_terms);
+      FindActiveJoints(model, landmarks, input.dense, options.solve.skip_unneeded, false, options.solve.user_terms);
   Camera camera = input.camera;
   if (options.solve.camera_knowledge != CameraKnowledge::kKnown) {
     const FocalPrior focal = input.focal_prior.value_or(FocalPrior::ForImage(camera.width, camera.height));

@@ -20,11 +20,18 @@
 
 namespace bodyloom {
 
+/// The ground under a person: {x : up · x = level_m}, in the frame of the states.
+struct FrameGround {
+  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< unit
+  double level_m = 0;
+};
+
 /// The terms of one frame, and its camera pose if the camera moves. Borrowed pointers outlive the cost.
 struct FrameData {
   /// Pose of a moving camera: the frame's state is in the scene, and its terms are in this camera's frame
   /// (moving_camera.h). Null: the camera is static.
   const CameraPose* camera_from_scene = nullptr;
+  FrameGround* ground = nullptr;  ///< of the frame's shot, as last estimated (terms/ground_contact); null: not known
   TermList terms;
 
   /// As of TermList.

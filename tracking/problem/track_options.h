@@ -103,11 +103,13 @@ struct GroundOptions {
   double contact_weight = 1;     ///< of standing feet on the estimated ground; 0: no ground is estimated
   double sigma_height_m = 0.03;  ///< of a standing ankle's height
   double sigma_slide_m = 0.03;   ///< of its position on the ground while the foot stands
+  double surface_weight = 1;     ///< of the surface not being below the ground, and touching it; 0: off
+  double balance_weight = 1;     ///< of the centre of mass standing above what touches the ground; 0: off
   /// Neither the vertical nor the ground.
   static GroundOptions Off() {
     GroundOptions options;
     options.use_up = false;
-    options.contact_weight = 0;
+    options.contact_weight = options.surface_weight = options.balance_weight = 0;
     return options;
   }
 };

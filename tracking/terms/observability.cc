@@ -15,7 +15,7 @@ constexpr double kMinLever = 0.04;  ///< metres a radian
 
 }  // namespace
 
-std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip,
+std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip, bool ground,
                                   std::span<const UserTerm> user_terms) {
   std::vector<int> all(model.num_joints());
   std::iota(all.begin(), all.end(), 0);
@@ -37,6 +37,11 @@ std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmark
     for (const CompiledInputs::Input& input : compiled->inputs) {
       if (!input.vertices.empty()) add(CompilePoint(model, input.vertices, input.weights, 0));
       if (input.kind == TermInput::Kind::kRotation) lever.at(input.joint) = std::max(lever[input.joint], kMinLever);
+    }
+  }
+  if (ground) {
+    for (const char* ankle : {"l_ankle", "r_ankle"}) {
+      if (const int j = model.FindJoint(ankle); j >= 0) lever[j] = std::max(lever[j], kMinLever);
     }
   }
   std::vector<int> active;

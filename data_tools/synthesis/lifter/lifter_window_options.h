@@ -17,8 +17,8 @@ struct LifterWindowOptions {
   double rate = kLifterRate;  ///< frames a second
 
   // Camera. Distances are in units of the body: metres for a person of the mean body's size.
-  double min_elevation_deg = -10, max_elevation_deg = 40;  ///< positive: the camera looks down on the person
-  double any_elevation = 0.12;                             ///< from -35 to 75 degrees instead of the above
+  double min_elevation_deg = -20, max_elevation_deg = 40;  ///< positive: the camera looks down on the person
+  double any_elevation = 0.15;                             ///< from -35 to 75 degrees instead of the above
   double roll_sd_deg = 4;
   double min_distance = 2.6, max_distance = 9;  ///< logarithmically uniform
   double off_axis = 0.35;                       ///< sideways, of the distance; half of it up and down

@@ -43,11 +43,19 @@ TEST(RecipeJoints, TPose) {
 TEST(RecipeJoints, Offsets) {
   const double pelvis = Joint("pelvis").y();
   EXPECT_NEAR(Joint("l_hip").y() - pelvis, -0.081, 0.002);
-  EXPECT_NEAR(Joint("spine1").y() - pelvis, 0.116, 0.001);
-  EXPECT_NEAR(Joint("spine2").y() - pelvis, 0.247, 0.001);
-  EXPECT_NEAR(Joint("spine3").y() - pelvis, 0.305, 0.001);
-  EXPECT_NEAR(Joint("neck").y() - pelvis, 0.487, 0.001);
-  EXPECT_NEAR(Joint("head").y() - pelvis, 0.586, 0.001);
+  EXPECT_NEAR(Joint("spine1").y() - pelvis, 0.118, 0.001);
+  EXPECT_NEAR(Joint("spine2").y() - pelvis, 0.250, 0.001);
+  EXPECT_NEAR(Joint("spine3").y() - pelvis, 0.309, 0.001);
+  EXPECT_NEAR(Joint("neck").y() - pelvis, 0.493, 0.001);
+  EXPECT_NEAR(Joint("head").y() - pelvis, 0.594, 0.001);
+}
+
+TEST(RecipeJoints, Proportions) {
+  const auto length = [](const char* a, const char* b) { return (Joint(a) - Joint(b)).norm(); };
+  const double thigh = length("l_hip", "l_knee"), shank = length("l_knee", "l_ankle");
+  const double arm = length("l_shoulder", "l_elbow") + length("l_elbow", "l_wrist");
+  EXPECT_NEAR(shank / thigh, 1.068, 0.002);
+  EXPECT_NEAR(arm / (thigh + shank), 0.630, 0.002);
 }
 
 TEST(RecipeJoints, RegressorRows) {
@@ -108,20 +116,22 @@ TEST(RecipeJoints, Landmarks) {
     EXPECT_NEAR(sum, 1, 1e-6) << names[i];
   }
   const MatrixX3d points = PoseLandmarks(body, {}, PoseFromAxisAngle(body, Eigen::VectorXd(), {0, 0, 0}), names);
-  // COCO's shoulders, elbows, wrists, knees and ankles are the joints.
-  for (const auto& [landmark, joint] : {std::pair{"left_shoulder", "l_shoulder"},
+  // COCO's elbows, wrists and knees are the joints.
+  for (const auto& [landmark, joint] : {std::pair{"left_elbow", "l_elbow"},
                                         {"right_elbow", "r_elbow"},
                                         {"left_wrist", "l_wrist"},
-                                        {"right_knee", "r_knee"},
-                                        {"left_ankle", "l_ankle"}}) {
+                                        {"right_knee", "r_knee"}}) {
     EXPECT_LT((points.row(body.FindLandmark(landmark)) - Joint(joint)).norm(), 1e-6) << landmark;
   }
-  // Hips: a quarter of the way from the hip joint to the vertex H03 at the side.
-  const int side = 3;  // H03 is the fourth vertex of the cage
-  EXPECT_LT(
-      (points.row(body.FindLandmark("left_hip")) - (0.75 * Joint("l_hip") + 0.25 * body.data().v_template.row(side)))
-          .norm(),
-      1e-6);
+  // The others are mixtures with vertices of the cage (H03 is its fourth, H13 its twelfth, U23 its 44th) and the knee.
+  const auto& v = body.data().v_template;
+  const auto expect = [&](const char* landmark, const Eigen::RowVector3d& place) {
+    EXPECT_LT((points.row(body.FindLandmark(landmark)) - place).norm(), 1e-6) << landmark;
+  };
+  expect("left_hip", 0.65 * Joint("l_hip") + 0.27 * v.row(3) + 0.08 * v.row(11));
+  expect("left_shoulder", 0.8 * Joint("l_shoulder") + 0.2 * v.row(43));
+  expect("left_ankle", 0.98 * Joint("l_ankle") + 0.02 * Joint("l_knee"));
+  EXPECT_NEAR(points(body.FindLandmark("left_ankle"), 1) - v.col(1).minCoeff(), 0.081, 0.001);
   const Eigen::RowVector3d nose = points.row(body.FindLandmark("nose"));
   const Eigen::RowVector3d eye = points.row(body.FindLandmark("left_eye"));
   const Eigen::RowVector3d ear = points.row(body.FindLandmark("left_ear"));

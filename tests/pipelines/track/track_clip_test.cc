@@ -193,15 +193,16 @@ bool PlansStraightKnees(TrackRequest request, const std::string& convention, con
                      [](const PlanEntry& entry) { return entry.what == "straight knees" && entry.runs; });
 }
 
-TEST(TrackClip, KneesAreKeptStraightForBlazePosesJointsOnly) {
+TEST(TrackClip, KneesAreKeptStraightUnlessSwitchedOff) {
   const ScratchFolder folder;
   TrackRequest request;
   const SynthClipFiles clip = SmallClip(folder);
   request.detections = clip.observations;
   request.cameras = clip.camera;
-  EXPECT_FALSE(PlansStraightKnees(request, "coco17", folder));
+  EXPECT_TRUE(PlansStraightKnees(request, "coco17", folder));
   EXPECT_TRUE(PlansStraightKnees(request, "mediapipe33", folder));
   request.straight_knees = 0;
+  EXPECT_FALSE(PlansStraightKnees(request, "coco17", folder));
   EXPECT_FALSE(PlansStraightKnees(request, "mediapipe33", folder));
   request.straight_knees = 0.5;
   EXPECT_TRUE(PlansStraightKnees(request, "coco17", folder));

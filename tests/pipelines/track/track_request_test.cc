@@ -77,9 +77,9 @@ TEST(TrackRequest, AVideoAloneIsDetected) {
 
 TEST(TrackRequest, KneesAreKeptStraightForBlazePosesJoints) {
   TrackRequest request = Complete();
-  EXPECT_EQ(StraightKneesWeight(request, "coco17"), 0);
-  EXPECT_EQ(StraightKneesWeight(request, "body25"), 0);
-  EXPECT_EQ(StraightKneesWeight(request, ""), 0);
+  EXPECT_EQ(StraightKneesWeight(request, "coco17"), kStraightKnees);
+  EXPECT_EQ(StraightKneesWeight(request, "body25"), kStraightKnees);
+  EXPECT_EQ(StraightKneesWeight(request, ""), kStraightKnees);
   EXPECT_EQ(StraightKneesWeight(request, "mediapipe33"), kBlazePoseStraightKnees);
   request.straight_knees = 0;
   EXPECT_EQ(StraightKneesWeight(request, "mediapipe33"), 0);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "geometry/base/check.h"
 #include "geometry/scene/camera_path.h"
 #include "tracking/initialise/ground_plane.h"
 #include "tracking/initialise/lifted_start.h"
@@ -46,6 +47,7 @@ ClipGround::ClipGround(const ClipTermInput& clip)
     : options_(clip.options.ground),
       keypoints_(clip.joints),
       known_(clip.input.ground),
+      lines_(known_ == nullptr && clip.input.camera_from_scene == nullptr ? clip.input.picture_vertical : nullptr),
       lifted_(clip.lifted.frames),
       landmarks_(clip.lifted_landmarks),
       why_not_(WhyNoGround(clip.input, clip.options)) {}
@@ -59,6 +61,7 @@ void ClipGround::Observe(SequenceProblem* problem) {
 
 void ClipGround::BeginFit(SequenceProblem* problem) {
   if (lifted_.empty()) return;
+  if (problem->layout.focal_column >= 0) focal_log_sigma_ = problem->log_focal_sigma;
   const int T = static_cast<int>(lifted_.size());
   for (int begin = 0, end = 0; begin < T; begin = end) {
     for (end = begin + 1; end < T && !problem->cut_before[end];) ++end;
@@ -71,8 +74,16 @@ void ClipGround::BeginFit(SequenceProblem* problem) {
       shot.up.found = true;
       shot.up.up = known_->up;
     }
-    if (shot.up.found) SetUpright(shot, shot.up.up, problem);
+    JoinLines(*problem, &shot);
+    if (shot.up.found) SetUpright(shot, shot.joined.up, problem);
   }
+}
+
+void ClipGround::JoinLines(const SequenceProblem& problem, Shot* shot) const {
+  shot->joined = {.up = shot->up.up, .sigma_rad = known_ != nullptr ? kKnownUpRad : GroundPlaneOptions().up_rad};
+  if (lines_ == nullptr || !shot->up.found) return;
+  shot->joined =
+      JoinVerticals(shot->up.up, shot->joined.sigma_rad, *lines_, std::exp(problem.log_focal), focal_log_sigma_);
 }
 
 void ClipGround::SetUpright(const Shot& shot, const Vector3d& up, SequenceProblem* problem) const {
@@ -103,15 +114,16 @@ void ClipGround::Hold(const Stance& stance, const GroundPlane& ground, FrameData
 }
 
 GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
-                                   const std::vector<double>& timestamps, const Vector3d& up) const {
+                                   const std::vector<double>& timestamps, const JoinedVertical& vertical) const {
+  const Vector3d& up = vertical.up;
   GroundPlaneOptions options;
+  options.up_rad = vertical.sigma_rad;
   if (known_ == nullptr) return EstimateGroundPlane(feet, timestamps, up, options);
   if (known_->has_plane) {
     // Somebody may stand on a box: then the plane does not apply to them, but the vertical does.
     GroundPlane known = StandOnPlane(feet, timestamps, up, kAnkleHeight - known_->camera_height_m, options);
     if (known.found) return known;
   }
-  options.up_rad = kKnownUpRad;
   return EstimateGroundPlane(feet, timestamps, up, options);
 }
 
@@ -143,10 +155,18 @@ bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coar
                               .end = frames[index[stance.end - 1]] + 1,
                               .seconds = stance.seconds});
     }
-    shot.ground = PlaneUnder(feet, timestamps, shot.up.up);
-    if (!shot.ground.found) continue;
+    JoinLines(*coarse, &shot);
+    shot.ground = PlaneUnder(feet, timestamps, shot.joined);
+    if (!shot.ground.found) {
+      SetUpright(shot, shot.joined.up, problem);
+      continue;
+    }
     any = true;
     SetUpright(shot, shot.ground.normal, problem);
+    shot.floor = std::make_unique<FrameGround>();
+    *shot.floor = {shot.ground.normal, shot.ground.offset_m - kAnkleHeight};
+    for (int t = shot.begin; t < shot.end; ++t) problem->frames[t].ground = shot.floor.get();
+    for (const int i : index) coarse->frames[i].ground = shot.floor.get();
     for (const Stance& stance : shot.ground.stances) {
       const int first = frames[index[stance.begin]], last = frames[index[stance.end - 1]];
       for (int i = stance.begin; i < stance.end; ++i) Hold(stance, shot.ground, &coarse->frames[index[i]]);
@@ -186,11 +206,16 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
                                         [](const Shot& a, const Shot& b) { return a.end - a.begin < b.end - b.begin; });
   if (longest == shots_.end()) return;
   result.has_up = longest->up.found;
-  result.up = longest->ground.found ? longest->ground.normal : longest->up.up;
+  result.up = longest->ground.found ? longest->ground.normal : longest->joined.up;
   result.up_spread_deg = longest->up.spread_deg;
   result.given = known_ != nullptr;
   result.up_sigma_deg =
-      known_ != nullptr ? known_->up_sigma_deg : kUpSigmaDegrees * std::sqrt(2) * GroundPlaneOptions().up_rad;
+      known_ != nullptr ? known_->up_sigma_deg : kUpSigmaDegrees * std::sqrt(2) * longest->joined.sigma_rad;
+  if (lines_ != nullptr && lines_->found && longest->up.found && !longest->joined.used) {
+    summary->plan.push_back({"vertical from lines in the fit", false,
+                             Concatenate(std::lround(longest->joined.angle_deg), "° off the lifter's, expected up to ",
+                                         kMaxPictureVerticalAngleDeg, "°")});
+  }
   result.contact_frames = contact_frames_;
   result.standing_speed_mps = standing_speed_mps_;
   if (!why_not_.empty()) return;
@@ -200,7 +225,7 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
   result.has_plane = ground.found;
   result.why = ground.why;
   if (!ground.found) return;
-  result.camera_height_m = kAnkleHeight - ground.offset_m;
+  result.camera_height_m = -longest->floor->level_m;
   if (known_ == nullptr) result.up_sigma_deg = kUpSigmaDegrees * ground.up_sigma_rad;
   const bool on_known = std::isnan(ground.offset_sigma_m);
   result.height_sigma_m = on_known && known_ != nullptr ? known_->height_sigma_m : ground.offset_sigma_m;

@@ -14,6 +14,7 @@
 #include "tracking/problem/track_input.h"
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
+#include "tracking/room/picture_vertical.h"
 
 namespace bodyloom {
 
@@ -37,13 +38,17 @@ class ClipGround : public ClipTerm {
  private:
   struct Shot {
     int begin = 0, end = 0;
-    UpEstimate up;
+    UpEstimate up;          ///< the lifter's, or as given
+    JoinedVertical joined;  ///< with the lines of the picture
     GroundPlane ground;
-    std::vector<StandingFoot> stances;  ///< without their places
+    std::unique_ptr<FrameGround> floor;  ///< under the ground's ankles; frames point to it
+    std::vector<StandingFoot> stances;   ///< without their places
   };
+  /// Joins the lifter's vertical with the picture's lines, for the focal length of `problem`.
+  void JoinLines(const SequenceProblem& problem, Shot* shot) const;
   /// The plane that feet stand on in a shot whose vertical is found.
   [[nodiscard]] GroundPlane PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
-                                       const std::vector<double>& timestamps, const Eigen::Vector3d& up) const;
+                                       const std::vector<double>& timestamps, const JoinedVertical& vertical) const;
   /// Sets the stances' positions on the floor from the solved states.
   void PlaceOnFloor(const SequenceProblem& problem, const Eigen::Vector3d& up,
                     std::vector<StandingFoot>* stances) const;
@@ -53,6 +58,8 @@ class ClipGround : public ClipTerm {
   const GroundOptions options_;
   const KeypointSequence* keypoints_;
   const KnownGround* known_;
+  const PictureVertical* lines_;  ///< null: none
+  double focal_log_sigma_ = 0;    ///< of the focal length that the fit begins with; 0: known
   const std::vector<LiftedFrame>& lifted_;
   const LiftedLandmarks& landmarks_;
   std::vector<Shot> shots_;

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Landmarks of a lifter that leans, turned to a vertical that is known.
+#include "tracking/clip/turn_to_vertical.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "geometry/math/rotation.h"
+#include "tracking/lifter/lifter_reading.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/room/picture_vertical.h"
+
+namespace bodyloom::turn_to_vertical_test {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kDegree = M_PI / 180;
+
+/// Two shots of five frames of somebody upright, seen as leaning by these angles together with the vertical.
+struct Clip {
+  LiftedStart lifted;
+  std::vector<FrameState> states;
+  std::vector<char> cut_before = {0, 0, 0, 0, 0, 1, 0, 0, 0, 0};
+  std::vector<Matrix3d> lean;
+
+  Clip(double first_deg, double second_deg) {
+    for (int t = 0; t < 10; ++t) {
+      lean.push_back(RotationFromAxisAngle(Vector3d((t < 5 ? first_deg : second_deg) * kDegree, 0, 0)));
+      LiftedFrame& frame = lifted.frames.emplace_back();
+      frame.seen = true;
+      frame.up = lean[t] * Vector3d(0, -1, 0);
+      frame.up_sigma = 0.1;
+      frame.points.resize(2, 3);
+      frame.points << Upright(t).transpose(), -0.3 * Upright(t).transpose();
+      LiftedLimb limb;
+      limb.points.fill(Upright(t));
+      frame.limbs[1] = {limb};
+      FrameState& state = states.emplace_back();
+      state.rotations.assign(2, Matrix3d::Identity());
+      state.rotations[0] = lean[t];
+    }
+  }
+  [[nodiscard]] Vector3d Upright(int t) const { return lean[t] * Vector3d(0, -0.5, 0); }
+};
+
+TEST(TurnToVertical, LandmarksAndStartsStandUprightUnderAGivenVertical) {
+  Clip clip(8, -5);
+  KnownGround ground;
+  TrackSequenceInput input;
+  input.ground = &ground;
+  EXPECT_NEAR(TurnToVertical(input, {}, clip.cut_before, &clip.lifted, &clip.states), 8 * kDegree, 1e-9);
+  for (int t = 0; t < 10; ++t) {
+    const LiftedFrame& frame = clip.lifted.frames[t];
+    EXPECT_LT((frame.points.row(0).transpose() - Vector3d(0, -0.5, 0)).norm(), 1e-9) << t;
+    EXPECT_LT((frame.points.row(1).transpose() - Vector3d(0, 0.15, 0)).norm(), 1e-9) << t;
+    EXPECT_LT((frame.limbs[1][0].points[3] - Vector3d(0, -0.5, 0)).norm(), 1e-9) << t;
+    EXPECT_LT((clip.states[t].rotations[0] - Matrix3d::Identity()).norm(), 1e-9) << t;
+    EXPECT_LT((clip.states[t].rotations[1] - Matrix3d::Identity()).norm(), 1e-9) << t;
+    EXPECT_LT((frame.up - clip.lean[t] * Vector3d(0, -1, 0)).norm(), 1e-12) << "the lifter's own stays";
+  }
+}
+
+TEST(TurnToVertical, LinesTurnByTheirShareOfTheInformation) {
+  Clip clip(8, 8);
+  PictureVertical lines;
+  lines.found = true;
+  lines.focal_px = 1000;
+  const Vector3d up(0, -1, 0);
+  lines.covariance = kDegree * kDegree * (Matrix3d::Identity() - up * up.transpose());
+  TrackSequenceInput input;
+  input.picture_vertical = &lines;
+  const double turn = TurnToVertical(input, {1000, 0}, clip.cut_before, &clip.lifted, &clip.states) / kDegree;
+  EXPECT_GT(turn, 6.5);  // σ 1° against some 3°
+  EXPECT_LT(turn, 8);
+  EXPECT_NEAR(std::atan2(clip.lifted.frames[2].points(0, 2), -clip.lifted.frames[2].points(0, 1)) / kDegree, turn - 8,
+              1e-6);
+}
+
+TEST(TurnToVertical, NothingTurnsWithoutAVerticalOrBehindAMovingCamera) {
+  TrackSequenceInput input;
+  KnownGround ground;
+  const std::vector<CameraPose> path(10);
+  PictureVertical none;
+  for (int what = 0; what < 3; ++what) {
+    Clip clip(8, 8);
+    input.ground = what == 1 ? &ground : nullptr;
+    input.camera_from_scene = what == 1 ? &path : nullptr;
+    input.picture_vertical = what == 2 ? &none : nullptr;
+    EXPECT_EQ(TurnToVertical(input, {}, clip.cut_before, &clip.lifted, &clip.states), 0);
+    EXPECT_EQ(clip.states[3].rotations[0], clip.lean[3]);
+  }
+}
+
+}  // namespace
+}  // namespace bodyloom::turn_to_vertical_test

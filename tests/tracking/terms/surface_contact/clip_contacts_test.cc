@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts and balance of a clip with known truth: somebody who stands, jumps, hovers, stands on something, leans.
+#include "tracking/terms/surface_contact/clip_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "data_tools/body/builtin_body.h"
+#include "geometry/math/rotation.h"
+#include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/problem/mass_centre.h"
+#include "tracking/problem/track_input.h"
+#include "tracking/problem/track_options.h"
+#include "tracking/terms/balance/balance.h"
+#include "tracking/terms/balance/clip_balance.h"
+#include "tracking/terms/landmarks.h"
+#include "tracking/terms/surface_contact/surface_contact.h"
+
+namespace bodyloom::clip_contacts_test {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr double kRate = 15;
+
+/// The built-in body in its T-pose before a level camera, on the ground but for a lift and a turn of the whole body.
+class Clip {
+ public:
+  Clip(int frames, const std::function<double(double)>& lift_m, double lean_rad = 0) {
+    problem_.layout = FrameLayout::Make(body_, CameraKnowledge::kKnown, MakePinhole(1280, 720, 1000), {0}, 0);
+    problem_.frames.resize(frames);
+    problem_.states.resize(frames);
+    problem_.cut_before.assign(frames, 0);
+    const double sole = body_.data().v_template.col(1).minCoeff();
+    ground_ = {Vector3d(0, -1, 0), -1.2};
+    for (int t = 0; t < frames; ++t) {
+      problem_.timestamps.push_back(t / kRate);
+      FrameState& state = problem_.states[t];
+      state.rotations.assign(body_.num_joints(), Eigen::Matrix3d::Identity());
+      state.rotations[0] = RotationFromAxisAngle(Vector3d(M_PI, 0, 0));
+      state.translation = Vector3d(0, 1.2 + sole - lift_m(t / kRate), 4);
+      problem_.frames[t].ground = &ground_;
+      if (lean_rad == 0) continue;
+      // About the soles.
+      const Vector3d place = body_.RestJoints({}).row(0).transpose() + state.translation, pivot(0, 1.2, 4);
+      const Eigen::Matrix3d turn = RotationFromAxisAngle(Vector3d(lean_rad, 0, 0));
+      state.rotations[0] = turn * state.rotations[0];
+      state.translation += turn * (place - pivot) - (place - pivot);
+    }
+  }
+
+  void Start(int round = 0) {
+    ClipContacts contacts(Input());
+    contacts.Observe(&problem_);
+    contacts.StartRound(round, {}, &problem_);
+  }
+  void StartBalance() {
+    balance_ = std::make_unique<ClipBalance>(Input());
+    balance_->Observe(&problem_);
+    balance_->StartRound(0, {}, &problem_);
+  }
+  [[nodiscard]] int NumTouching(int t) const {
+    int count = 0;
+    for (const auto& contact : problem_.frames[t].Get<SurfaceContactTerm>().contacts) count += contact.touches ? 1 : 0;
+    return count;
+  }
+  [[nodiscard]] const FrameData& Frame(int t) const { return problem_.frames[t]; }
+  [[nodiscard]] const BodyModel& body() const { return body_; }
+  SequenceProblem* problem() { return &problem_; }
+
+ private:
+  ClipTermInput Input() {
+    return {.input = input_,
+            .options = options_,
+            .layout = problem_.layout,
+            .landmarks = landmarks_,
+            .lifted = lifted_,
+            .lifted_landmarks = lifted_landmarks_};
+  }
+
+  const BodyModel& body_ = BuiltinBody();
+  TrackSequenceInput input_;
+  TrackSequenceOptions options_;
+  ObservedLandmarks landmarks_;
+  LiftedStart lifted_;
+  LiftedLandmarks lifted_landmarks_;
+  SequenceProblem problem_;
+  FrameGround ground_;
+  std::unique_ptr<ClipBalance> balance_;
+};
+
+TEST(ContactPoints, AreSolesHandsSeatAndHead) {
+  const BodyModel& body = BuiltinBody();
+  const std::vector<ContactPoint> points = FindContactPoints(body);
+  EXPECT_GT(points.size(), 60U);
+  EXPECT_LT(points.size(), 200U);
+  const auto& rest = body.data().v_template;
+  int soles = 0;
+  bool lowest = false, highest = false, left = false, back = false;
+  for (const ContactPoint& point : points) {
+    soles += point.sole ? 1 : 0;
+    EXPECT_TRUE(!point.sole || rest(point.vertex, 1) < rest.col(1).minCoeff() + 0.0151);
+    lowest |= rest(point.vertex, 1) == rest.col(1).minCoeff();
+    highest |= rest(point.vertex, 1) == rest.col(1).maxCoeff();
+    left |= rest(point.vertex, 0) == rest.col(0).maxCoeff();
+    back |= rest(point.vertex, 2) == rest.col(2).minCoeff();
+  }
+  EXPECT_GE(soles, 8);
+  EXPECT_TRUE(lowest && highest && left && back);
+}
+
+TEST(ClipContacts, SolesOfSomebodyWhoStandsTouch) {
+  Clip clip(10, [](double) { return 0.0; });
+  clip.Start();
+  for (int t = 0; t < 10; ++t) {
+    const auto& term = clip.Frame(t).Get<SurfaceContactTerm>();
+    EXPECT_GE(clip.NumTouching(t), 8);
+    EXPECT_GT(term.weight, 0);
+    for (const auto& contact : term.contacts) {
+      EXPECT_TRUE(!contact.touches || clip.body().data().v_template(contact.vertex, 1) < -0.9);
+    }
+  }
+}
+
+/// A jump of 0.6 s rises by 44 cm: nothing pulls it down. The same height for as long without falling is no jump.
+TEST(ClipContacts, FlightsAreLeftAloneAndHoveringIsNot) {
+  const auto jump = [](double s) { return s < 0.4 || s > 1.0 ? 0.0 : RiseInFlight(s - 0.4, 1.0 - s); };
+  Clip flies(21, jump);
+  flies.Start();
+  for (int t = 8; t <= 13; ++t) EXPECT_EQ(flies.NumTouching(t), 0) << t;
+  EXPECT_GE(flies.NumTouching(0), 8);
+  Clip hovers(21, [](double s) { return s < 0.4 || s > 1.0 ? 0.0 : 0.12; });
+  hovers.Start();
+  for (int t = 8; t <= 13; ++t) EXPECT_GT(hovers.NumTouching(t), 0) << t;
+}
+
+TEST(ClipContacts, SomebodyHalfAMetreUpStandsOnSomethingElse) {
+  Clip clip(15, [](double) { return 0.5; });
+  clip.Start();
+  for (int t = 0; t < 15; ++t) EXPECT_EQ(clip.NumTouching(t), 0);
+}
+
+/// Whoever slides over the ground does not stand on it.
+TEST(ClipContacts, SkatersDoNotTouch) {
+  Clip clip(15, [](double) { return 0.03; });
+  for (int t = 0; t < 15; ++t) clip.problem()->states[t].translation.x() = 1.0 * t / kRate;
+  clip.Start();
+  for (int t = 0; t < 15; ++t) EXPECT_EQ(clip.NumTouching(t), 0);
+}
+
+TEST(ClipContacts, ALevelThatIsWrongMovesToTheSoles) {
+  Clip clip(15, [](double) { return -0.04; });
+  clip.Start();
+  const double before = clip.Frame(3).ground->level_m;
+  clip.Start(1);
+  EXPECT_NEAR(clip.Frame(3).ground->level_m, before - 0.04, 1e-6);
+}
+
+/// A body that leans backwards by 20° as a whole has its centre of mass some 25 cm behind its heels; one that stands
+/// upright needs no term.
+TEST(ClipBalance, PullsTheCentreOfMassOverTheFeet) {
+  Clip upright(15, [](double) { return 0.0; });
+  upright.StartBalance();
+  EXPECT_TRUE(upright.Frame(7).Get<BalanceTerm>().is_empty());
+  const double lean = -20 * M_PI / 180;
+  Clip leans(
+      15, [](double) { return 0.0; }, lean);
+  leans.StartBalance();
+  const auto& term = leans.Frame(7).Get<BalanceTerm>();
+  ASSERT_FALSE(term.is_empty());
+  EXPECT_NEAR(term.weight, 1, 1e-6);
+  Kinematics kinematics;
+  PointEvaluator points;
+  const FrameState& state = leans.problem()->states[7];
+  kinematics.Set(leans.body(), {}, state.rotations, state.translation, false);
+  PointEvaluator::VertexCache cache;
+  cache.NewFrame(kinematics);
+  const Vector3d centre = points.Evaluate(kinematics, *term.centre_of_mass, false);
+  const Vector3d support = term.share * PointEvaluator::VertexPosition(kinematics, term.vertices[0], &cache) +
+                           (1 - term.share) * PointEvaluator::VertexPosition(kinematics, term.vertices[1], &cache);
+  const double beside = (term.horizontal * (centre - support + term.offset_m)).norm();
+  EXPECT_GT(beside, 0.2);
+  EXPECT_LT(beside, 0.4);
+}
+
+/// Fast motion has angular momentum, which the term leaves out.
+TEST(ClipBalance, SaysNothingOfFastMotion) {
+  Clip clip(
+      15, [](double) { return 0.0; }, 20 * M_PI / 180);
+  for (int t = 0; t < 15; ++t) clip.problem()->states[t].translation.x() = 0.2 * std::sin(2 * M_PI * t / kRate);
+  clip.StartBalance();
+  for (int t = 2; t < 13; ++t) {
+    const double acceleration = std::abs(0.2 * 4 * M_PI * M_PI * std::sin(2 * M_PI * t / kRate));
+    EXPECT_TRUE(acceleration <= 6 || clip.Frame(t).Get<BalanceTerm>().is_empty()) << t;
+  }
+}
+
+}  // namespace
+}  // namespace bodyloom::clip_contacts_test

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Points of a body's surface that can touch the ground, and their heights above it.
+///
+/// Of the vertices that follow a joint more than any other, those are taken that lie farthest along each of the body's
+/// six axes in the rest pose, and for ankles and feet along the four diagonals of the sole as well: heels, balls and
+/// toes, knees, seat, back, elbows, hands, head. Joints that lead fewer than four vertices have none.
+#pragma once
+
+#include <vector>
+
+#include "geometry/body/body_model.h"
+#include "geometry/body/centre_of_mass.h"
+#include "tracking/problem/body_points.h"
+#include "tracking/problem/sequence_problem.h"
+
+namespace bodyloom {
+
+struct ContactPoint {
+  int vertex = 0;
+  int joint = 0;      ///< that it follows
+  bool sole = false;  ///< of an ankle or foot, and within 1.5 cm of the lowest vertex of the rest pose
+  double rest_m = 0;  ///< of a sole: height above that vertex in the rest pose, in which feet stand flat
+};
+
+/// Ascending by vertex, each vertex once.
+std::vector<ContactPoint> FindContactPoints(const BodyModel& model);
+
+/// Rise of the centre of mass of a body that left the ground `since_s` ago and returns in `until_s`, metres:
+/// ½ g · since · until. Contact points rise by no more, save for how the limbs are drawn up.
+inline double RiseInFlight(double since_s, double until_s) { return 0.5 * kGravity * since_s * until_s; }
+
+/// Places of contact points in the frames of a problem; scratch memory is reused between frames.
+class ContactPlaces {
+ public:
+  /// One column of `places` for each point: positions in the frame of the states, metres.
+  void Evaluate(const SequenceProblem& problem, int frame, const std::vector<ContactPoint>& points,
+                Eigen::Matrix3Xd* places);
+
+ private:
+  Kinematics kinematics_;
+  PointEvaluator::VertexCache vertices_;
+};
+
+}  // namespace bodyloom

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/terms/surface_contact/surface_contact.h"
+
+#include <algorithm>
+
+#include "tracking/problem/frame_accumulator.h"
+
+namespace bodyloom {
+
+using Eigen::Vector3d;
+
+void SurfaceContactTerm::Add(FrameAccumulator* sums) const {
+  if (!(weight > 0)) return;
+  const FrameLayout& layout = sums->layout();
+  // Except for weak perspective the kinematics include the translation.
+  const bool weak = layout.knowledge == CameraKnowledge::kWeak;
+  const Vector3d offset = weak ? layout.BodyPlace(sums->state()) : Vector3d::Zero();
+  const Eigen::RowVector3d by_place = up.transpose() * layout.BodyPlaceByTranslation(sums->state()) / sigma_m;
+  constexpr double kVertexAlone[3] = {1, 0, 0};
+  for (const Contact& contact : contacts) {
+    const int vertices[3] = {contact.vertex, contact.vertex, contact.vertex};
+    const Vector3d x =
+        sums->points().Evaluate(sums->kinematics(), vertices, kVertexAlone, &sums->vertices(), sums->derivatives());
+    const double height = (up.dot(x + offset) - level_m - contact.rest_m) / sigma_m;
+    const bool free = !contact.touches && height >= 0;
+    if (free && !sums->one_by_one()) continue;
+    const double residual = free ? 0 : height;
+    const double scale = sums->AddGroup(1, residual * residual, kSurfaceContactKernel, weight);
+    if (!sums->derivatives()) continue;
+    auto rows = sums->NextRows(3);
+    sums->FillPointRows(rows);
+    const Eigen::RowVectorXd row = scale / sigma_m * up.transpose() * rows;
+    rows.row(0) = row;
+    rows.row(0).segment<3>(layout.translation_column) = scale * by_place;
+    if (free) rows.row(0).setZero();
+    sums->NextResiduals(1)[0] = scale * residual;
+    sums->TakeRows(1);
+    sums->DependsOnPoint();
+    sums->DependsOn(layout.TranslationBlock());
+  }
+}
+
+}  // namespace bodyloom

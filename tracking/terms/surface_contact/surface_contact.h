@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Nothing below the ground, and something on it: heights of surface points above the ground of the person.
+///   ½ w Σ_k ρ((h_k / σ)²)               a point that touches the ground
+/// + ½ w Σ_k ρ((min(0, h_k) / σ)²)       any other point near it
+/// h_k = u · (x_k + o) − l − r_k, metres: u the vertical, l the level of the ground, o = FrameLayout::BodyPlace, r_k
+/// the height of a sole's point above the lowest of a foot that stands flat; ρ: Geman–McClure with
+/// c = kSurfaceContactKernel. Which points touch is found in clip_contacts.h and held during a solve. Runs in frames of a shot whose ground is known.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tracking/problem/frame_term.h"
+
+namespace bodyloom {
+
+inline constexpr double kSurfaceContactKernel = 4;  ///< c of ρ, in σ
+
+class SurfaceContactTerm : public CopyableTerm<SurfaceContactTerm> {
+ public:
+  struct Contact {
+    int vertex = 0;
+    bool touches = false;
+    double rest_m = 0;  ///< r
+  };
+  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< u, camera axes, unit
+  double level_m = 0;                              ///< l
+  double sigma_m = 0.02;                           ///< σ
+  double weight = 0;                               ///< w
+  std::vector<Contact> contacts;
+
+  [[nodiscard]] std::string name() const override { return "surface on the ground"; }
+  [[nodiscard]] int num_rows() const override {
+    return weight > 0 && !contacts.empty() ? static_cast<int>(contacts.size()) + 3 : 0;
+  }
+  void Add(FrameAccumulator* sums) const override;
+};
+
+}  // namespace bodyloom
