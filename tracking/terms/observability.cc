@@ -15,8 +15,8 @@ constexpr double kMinLever = 0.04;  ///< metres a radian
 
 }  // namespace
 
-std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip, bool ground,
-                                  std::span<const UserTerm> user_terms) {
+std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip,
+                                  bool ground, std::span<const UserTerm> user_terms) {
   std::vector<int> all(model.num_joints());
   std::iota(all.begin(), all.end(), 0);
   if (dense || !skip) return all;

@@ -16,7 +16,7 @@ namespace bodyloom {
 /// the prior, and holding them at rest affects observations by no more than that lever. `skip` false: all joints.
 /// `ground`: ankles as well, because a ground lays the soles of standing feet flat (terms/surface_contact).
 /// A landmark or surface point that a user's term reads counts as observed, and a joint that it reads is estimated.
-std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip, bool ground,
-                                  std::span<const UserTerm> user_terms = {});
+std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmarks& landmarks, bool dense, bool skip,
+                                  bool ground, std::span<const UserTerm> user_terms = {});
 
 }  // namespace bodyloom

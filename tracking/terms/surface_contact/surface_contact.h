@@ -4,7 +4,8 @@
 /// + ½ w Σ_k ρ((min(0, h_k) / σ)²)       any other point near it
 /// h_k = u · (x_k + o) − l − r_k, metres: u the vertical, l the level of the ground, o = FrameLayout::BodyPlace, r_k
 /// the height of a sole's point above the lowest of a foot that stands flat; ρ: Geman–McClure with
-/// c = kSurfaceContactKernel. Which points touch is found in clip_contacts.h and held during a solve. Runs in frames of a shot whose ground is known.
+/// c = kSurfaceContactKernel. Which points touch is found in clip_contacts.h and held during a solve. Runs in frames of
+/// a shot whose ground is known.
 #pragma once
 
 #include <Eigen/Core>
