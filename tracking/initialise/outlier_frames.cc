@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "tracking/initialise/body_rods.h"
 #include "tracking/initialise/swap_repair.h"
 
 namespace bodyloom {
@@ -15,6 +16,8 @@ namespace {
 constexpr double kLongest_s = 0.5;
 constexpr double kJump = 0.15, kJumpSpeed = 4, kJumpSize = 1.8;  // body sizes, body sizes a second, ratio
 constexpr double kContinues = 0.1, kContinuesSpeed = 1, kSameSize = 1.5;
+constexpr double kLongestUpsideDown_s = 2;
+constexpr double kHeadUp = 0.5;  // trunks: by which shoulders are above the hips of whoever is upright
 constexpr double kFlat = 0.015;  // body sizes; a person in profile with closed legs is 0.05 across
 
 void Empty(int t, KeypointSequence* keypoints) {
@@ -63,6 +66,36 @@ int DropFlatFrames(const std::vector<double>& sizes, KeypointSequence* keypoints
   return static_cast<int>(flat.size());
 }
 
+/// Empties frames in which the trunk is upside down between upright ones, with turns to and fro that nobody makes.
+int DropUpsideDownFrames(KeypointSequence* keypoints) {
+  const std::vector<Eigen::Vector2d> trunk = FindBodyRods(*keypoints).trunk;
+  const std::vector<double>& times = keypoints->timestamps;
+  const auto is_upright = [&](size_t t) { return trunk[t].y() < -kHeadUp; };
+  const auto is_inverted = [&](size_t t) { return trunk[t].y() > kHeadUp; };
+  const auto turns = [&](size_t t, size_t u) {
+    return SmallestTurn(trunk[t], trunk[u]) > kFasterThanSomersaults * (times[u] - times[t]);
+  };
+  std::vector<size_t> frames;
+  for (size_t t = 0; t < trunk.size(); ++t) {
+    if (trunk[t].allFinite()) frames.push_back(t);
+  }
+  int dropped = 0;
+  for (size_t i = 1; i < frames.size(); ++i) {
+    const size_t before = frames[i - 1], begin = frames[i];
+    if (!is_upright(before) || !is_inverted(begin) || !turns(before, begin)) continue;
+    size_t j = i + 1;
+    while (j < frames.size() && !is_upright(frames[j]) && !turns(frames[j - 1], frames[j])) ++j;
+    if (j == frames.size() || !is_upright(frames[j]) || !turns(frames[j - 1], frames[j])) continue;
+    if (times[frames[j]] - times[begin] > kLongestUpsideDown_s) continue;
+    for (size_t t = begin; t < frames[j]; ++t) {
+      Empty(int(t), keypoints);
+      ++dropped;
+    }
+    i = j;
+  }
+  return dropped;
+}
+
 struct Change {
   double distance = 0;  ///< median of the common landmarks, in sizes of the smaller body
   double size = 1;      ///< ratio of the larger body to the smaller
@@ -96,9 +129,10 @@ bool ContinuesFrame(const KeypointSequence& keypoints, int a, int b) {
 
 int RemoveOutlierFrames(KeypointSequence* keypoints) {
   const int T = keypoints->num_frames();
+  int dropped = DropUpsideDownFrames(keypoints), good = -1;
   std::vector<double> sizes(T);
   for (int t = 0; t < T; ++t) sizes[t] = SeenBodySize(*keypoints, t);
-  int dropped = DropFlatFrames(sizes, keypoints), good = -1;
+  dropped += DropFlatFrames(sizes, keypoints);
   if (dropped > 0) {
     for (int t = 0; t < T; ++t) sizes[t] = SeenBodySize(*keypoints, t);
   }

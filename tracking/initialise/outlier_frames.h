@@ -13,8 +13,14 @@ namespace bodyloom {
 /// cut and is kept. Bodies a and b, dt seconds apart, with sizes s (diagonal of the box around the seen landmarks):
 ///   jump:      median distance of common landmarks > (0.15 + 4 dt) min(s_a, s_b), or s changes by over 1.8 (1 + 4 dt)
 ///   continues: median distance < (0.1 + dt) min(s_a, s_b), and s changes by less than 1.5
-/// Frames with fewer than four seen landmarks are neither. Linear in the number of frames. Returns the number of frames
-/// emptied.
+/// Frames with fewer than four seen landmarks are neither.
+///
+/// Or the body is upside down between upright frames, as a detector may see it against the light: shoulders half a
+/// trunk below the hips in frames [a, b) of at most 2 s, half a trunk above them in a − 1 and b, and from a − 1 to a
+/// and from b − 1 to b the trunk would have turned faster than in any somersault (body_rods.h). Handstands, cartwheels
+/// and flips are kept: the trunk gets there in steps that a camera sees.
+///
+/// Linear in the number of frames. Returns the number of frames emptied.
 int RemoveOutlierFrames(KeypointSequence* keypoints);
 
 /// True if frame b of a sequence continues the earlier frame a, as defined above.

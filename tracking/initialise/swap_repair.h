@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -14,7 +15,16 @@ namespace bodyloom {
 /// Exchanges each left–right pair back in the frames where it was swapped: a two-state trellis over the clip, in which
 /// a jump costs its squared length in body sizes (saturated) and a swapped frame costs a little, so that a pair is only
 /// exchanged where both its points jump to each other's place and back. Pairs are found by name (left_x, right_x);
-/// shoulders with hips, and eyes with ears, are not tied together. Returns the number of exchanged pairs × frames.
+/// shoulders with hips, and eyes with ears, are not tied together.
+///
+/// Before that whole bodies: a detector that takes a front for a back, in frames [a, b), exchanges all pairs at once. A
+/// trellis over the clip has a cost of the joints' accelerations, all pairs together, and one of 15 a second of
+/// exchanged frames. Its exchanged frames are put back if shoulders or hips would have turned faster than anybody
+/// (body_rods.h) both between a − 1 and a and between b − 1 and b, and they last for at most 3 s. Frames up to the first
+/// or the last one are left, since nothing says which side is right. People who turn, however fast, pass through a
+/// narrow view that shows it.
+///
+/// Returns the number of exchanged pairs × frames.
 int RepairSwaps(KeypointSequence* keypoints);
 
 inline constexpr double kMaxGap_s = 1;  ///< between frames of one shot
@@ -24,7 +34,9 @@ inline constexpr double kMaxGap_s = 1;  ///< between frames of one shot
 std::vector<char> FindCuts(const KeypointSequence& keypoints);
 
 /// True if the confidence of a landmark suffices to judge motion by it (0.2).
-bool IsSeen(const Keypoint& point);
+inline bool IsSeen(const Keypoint& point) {
+  return point.confidence >= 0.2F && std::isfinite(point.x) && std::isfinite(point.y);
+}
 
 /// Diagonal of the box around the seen landmarks of frame t: the person's size in the image, pixels; 0 with fewer
 /// than 4.
