@@ -20,9 +20,9 @@ namespace bodyloom {
 /// Before that whole bodies: a detector that takes a front for a back, in frames [a, b), exchanges all pairs at once. A
 /// trellis over the clip has a cost of the joints' accelerations, all pairs together, and one of 15 a second of
 /// exchanged frames. Its exchanged frames are put back if shoulders or hips would have turned faster than anybody
-/// (body_rods.h) both between a − 1 and a and between b − 1 and b, and they last for at most 3 s. Frames up to the first
-/// or the last one are left, since nothing says which side is right. People who turn, however fast, pass through a
-/// narrow view that shows it.
+/// (body_rods.h) both between a − 1 and a and between b − 1 and b, and they last for at most 3 s. Frames up to the
+/// first or the last one are left, since nothing says which side is right. People who turn, however fast, pass through
+/// a narrow view that shows it.
 ///
 /// Returns the number of exchanged pairs × frames.
 int RepairSwaps(KeypointSequence* keypoints);
