@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "geometry/base/check.h"
@@ -51,10 +52,6 @@ std::string WhyNoLines(const SceneRequest& request, const SceneInputs& scene) {
 PictureVertical VerticalOf(const FrameSamples& samples, const std::vector<CoveredPixels>& covered,
                            const Matrix2x3d& video_from_camera, const SceneInputs& scene, int num_threads) {
   PictureVertical none;
-  if (samples.samples().empty()) {
-    none.why = "no frame of the video";
-    return none;
-  }
   const StillPicture picture = MedianPicture(samples, covered, num_threads);
   if (picture.restless_share > kMaxRestlessShare) {
     none.why = Concatenate(std::lround(100 * picture.restless_share),
@@ -76,13 +73,14 @@ Matrix2x3d VideoFromCamera(const SceneRequest& request, const FrameSamples& samp
 
 }  // namespace
 
-PictureVertical VerticalOfClip(const SceneRequest& request, const DetectedClip& clip, const SceneInputs& scene) {
+PictureVertical VerticalOfClip(const TrackSettings& request, const DetectedClip& clip, const SceneInputs& scene) {
   PictureVertical none;
-  none.why = WhyNoLines(request, scene);
   const FrameSamples& samples = clip.samples;
-  if (!none.why.empty() || samples.samples().empty()) return none;
+  none.why = WhyNoLines(request, scene);
+  if (none.why.empty() && samples.samples().empty()) none.why = "no frames were kept";
+  if (!none.why.empty()) return none;
   std::vector<CoveredPixels> covered(samples.samples().size());
-  const int threads = ThreadsFor(0);
+  const int threads = ThreadsFor(request.solve.num_threads);
   ParallelFor(static_cast<int>(covered.size()), threads, [&](int i) {
     const auto frame = static_cast<size_t>(samples.samples()[i].frame);
     const std::vector<DetectedPerson>& people = clip.people.frames[frame];
@@ -112,8 +110,13 @@ PictureVertical VerticalOfVideo(const TrackRequest& request, const KeypointSeque
     samples.Add(frame);
     times.push_back(time_s);
   }
-  if (samples.samples().empty()) return none;
-  const Matrix2x3d map = VideoFromCamera(request, samples, scene);
+  Matrix2x3d map;
+  try {
+    map = VideoFromCamera(request, samples, scene);
+  } catch (const std::runtime_error& error) {  // another crop: of no use here, and no fault of the track
+    none.why = error.what();
+    return none;
+  }
   std::vector<CoveredPixels> covered(samples.samples().size());
   for (size_t i = 0; keypoints != nullptr && keypoints->num_frames() > 0 && i < covered.size(); ++i) {
     const double at = times[samples.samples()[i].frame] - request.video_offset / source.fps();

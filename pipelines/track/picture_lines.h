@@ -14,7 +14,7 @@ namespace bodyloom {
 
 /// From the frames that the detector kept (DetectPeopleRequest::keep_samples): people are masked by their masks, or by
 /// the rectangles of their landmarks. `scene`: its camera has the image size.
-PictureVertical VerticalOfClip(const SceneRequest& request, const DetectedClip& clip, const SceneInputs& scene);
+PictureVertical VerticalOfClip(const TrackSettings& request, const DetectedClip& clip, const SceneInputs& scene);
 
 /// From the request's video, read once more, at most its first minute at 30 frames a second. `keypoints`, in the
 /// camera's pixels: of the person, whose rectangle is masked in the frames of their times; null: nobody is masked.
