@@ -70,7 +70,7 @@ TEST(SidePanel, SomebodyFarAwayMakesNobodySmall) {
   EXPECT_NEAR(HeightIn(Pixels(Panel({near, far}), 1, far)), HeightIn(before), 1e-6) << "and both are of one size";
 }
 
-TEST(SidePanel, EverybodyFillsAThirdOfTheHeight) {
+TEST(SidePanel, EverybodyIsOverAQuarterOfThePanelsHeight) {
   const std::vector<SidePanelPerson> people = {At(0, 3), At(2, 7), At(-3, 12), At(1, 30)};
   for (size_t n = 1; n <= people.size(); ++n) {
     const SidePanel panel = Panel({people.begin(), people.begin() + static_cast<std::ptrdiff_t>(n)});
