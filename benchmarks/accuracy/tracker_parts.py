@@ -21,6 +21,9 @@ import tempfile
 ROWS = (("everything", []),
         ("without uncertainty", ["--no-uncertainty"]),
         ("without ground", ["--no-ground"]),
+        ("without contacts", ["--no-contacts"]),
+        ("without balance", ["--no-balance"]),
+        ("without straight knees", ["--straight-knees", "0"]),
         ("without shape", ["--no-shape"]),
         ("without pose prior", ["--prior", "none"]),
         ("without lifter", ["--lifter", "none"]),
@@ -28,7 +31,8 @@ ROWS = (("everything", []),
         ("Ceres", ["--solver", "ceres"]),
         ("focal length unknown", ["--camera", "unknown-focal"]),
         ("weak perspective", ["--camera", "weak"]))
-ERRORS = ("pa_mpjpe_mm", "mpjpe_scaled_mm", "heldout_median_px", "accel_err_ms2", "sigma_within_2_percent")
+ERRORS = ("pa_mpjpe_mm", "mpjpe_scaled_mm", "heldout_median_px", "accel_err_ms2", "sigma_within_2_percent", "room_g_mpjpe_mm", "room_wa_mpjpe_mm",
+          "tilt_deg", "ankle_height_err_mm", "knee_bias_deg")
 
 
 def main():
