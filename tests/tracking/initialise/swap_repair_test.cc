@@ -175,7 +175,7 @@ TEST(SwapRepair, RealDancersInNineCamerasStayAsTheyAre) {
       exchanged += FramesThatDiffer(k, before);
     }
     EXPECT_EQ(dropped, 0) << clip;
-    // Of 5184. The break dancer turns away in frames 67 to 73 of c06, where the detector exchanges sides to and fro.
+    // Of 5184. In frames 67 to 73 of c06 the detector exchanges the break dancer's sides to and fro.
     EXPECT_LE(exchanged, clip.starts_with("gBR") ? 4 : 0) << clip;
   }
 }
