@@ -10,6 +10,7 @@
 #include "geometry/base/percentile.h"
 #include "geometry/scene/camera_path.h"
 #include "tracking/problem/mass_centre.h"
+#include "tracking/problem/track_input.h"
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
 #include "tracking/terms/ground_contact/ground_contact.h"
@@ -140,6 +141,7 @@ void LevelGrounds(const std::vector<ContactPoint>& points, const std::vector<std
 
 ClipContacts::ClipContacts(const ClipTermInput& clip)
     : weight_(clip.options.ground.surface_weight),
+      level_is_given_(clip.input.ground != nullptr && clip.input.ground->has_plane),
       num_threads_(clip.num_threads),
       points_(FindContactPoints(*clip.layout.model)),
       centre_of_mass_(CompileCentreOfMass(*clip.layout.model, clip.layout.num_betas)) {}
@@ -153,7 +155,7 @@ void ClipContacts::StartRound(int round, const std::vector<int>& /*frames*/, Seq
   const std::vector<char> hovers = FindHovering(*problem, centre_of_mass_, all.lowest, num_threads_);
   std::vector<std::vector<char>> touches(problem->frames.size());
   for (size_t t = 0; t < problem->frames.size(); ++t) touches[t] = FindTouching(*problem, points_, all, hovers, t);
-  if (round > 0) LevelGrounds(points_, touches, problem, &all);
+  if (round > 0 && !level_is_given_) LevelGrounds(points_, touches, problem, &all);
   for (size_t t = 0; t < problem->frames.size(); ++t) {
     FrameData& frame = problem->frames[t];
     auto& term = frame.Get<SurfaceContactTerm>();

@@ -9,7 +9,7 @@
 /// of the ground stay above it.
 ///
 /// Rounds after the first begin by moving the level of a shot's ground to the median of the touching points, since the
-/// first estimate is that of ankles, which stand at a height of their own.
+/// first estimate is that of ankles, which stand at a height of their own. A ground that is given stays where it is.
 #pragma once
 
 #include <memory>
@@ -42,6 +42,7 @@ class ClipContacts : public ClipTerm {
 
  private:
   double weight_;
+  bool level_is_given_;
   int num_threads_;
   std::vector<ContactPoint> points_;
   CompiledPoint centre_of_mass_;

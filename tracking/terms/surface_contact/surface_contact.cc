@@ -19,14 +19,18 @@ void SurfaceContactTerm::Add(FrameAccumulator* sums) const {
   constexpr double kVertexAlone[3] = {1, 0, 0};
   for (const Contact& contact : contacts) {
     const int vertices[3] = {contact.vertex, contact.vertex, contact.vertex};
-    const Vector3d x =
-        sums->points().Evaluate(sums->kinematics(), vertices, kVertexAlone, &sums->vertices(), sums->derivatives());
+    const auto place = [&](bool jacobian) {
+      return sums->points().Evaluate(sums->kinematics(), vertices, kVertexAlone, &sums->vertices(), jacobian);
+    };
+    // Derivatives only of points that cost something, which few do.
+    const Vector3d x = place(false);
     const double height = (up.dot(x + offset) - level_m - contact.rest_m) / sigma_m;
     const bool free = !contact.touches && height >= 0;
     if (free && !sums->one_by_one()) continue;
     const double residual = free ? 0 : height;
     const double scale = sums->AddGroup(1, residual * residual, kSurfaceContactKernel, weight);
     if (!sums->derivatives()) continue;
+    place(true);
     auto rows = sums->NextRows(3);
     sums->FillPointRows(rows);
     const Eigen::RowVectorXd row = scale / sigma_m * up.transpose() * rows;

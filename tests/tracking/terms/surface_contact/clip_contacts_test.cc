@@ -60,6 +60,7 @@ class Clip {
     contacts.Observe(&problem_);
     contacts.StartRound(round, {}, &problem_);
   }
+  void GiveGround(const KnownGround* ground) { input_.ground = ground; }
   void StartBalance() {
     balance_ = std::make_unique<ClipBalance>(Input());
     balance_->Observe(&problem_);
@@ -160,6 +161,12 @@ TEST(ClipContacts, ALevelThatIsWrongMovesToTheSoles) {
   const double before = clip.Frame(3).ground->level_m;
   clip.Start(1);
   EXPECT_NEAR(clip.Frame(3).ground->level_m, before - 0.04, 1e-6);
+  Clip given(15, [](double) { return -0.04; });
+  KnownGround ground;
+  ground.has_plane = true;
+  given.GiveGround(&ground);
+  given.Start(1);
+  EXPECT_EQ(given.Frame(3).ground->level_m, before) << "a ground that is given stays";
 }
 
 /// A body that leans backwards by 20° as a whole has its centre of mass some 25 cm behind its heels; one that stands
