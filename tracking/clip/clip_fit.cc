@@ -287,15 +287,20 @@ void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
 }
 
 void ClipFit::FitRounds(SequenceProblem* coarse) {
+  int total = 0;
+  for (const auto& term : terms_) total += term->rounds().count;
+  const double share = total > 0 ? (stages_.round.to - stages_.round.from) / total : 0;  // of the whole progress
+  Stage stage = stages_.round;
   // Labels align the body with its outline before dense keypoints are matched to the visible surface.
   for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
     const ClipTerm::Rounds rounds = (*term)->rounds();
-    Stage stage = stages_.round;
     stage.name = rounds.stage;
     stage.max_iterations = rounds.max_iterations;
     for (int round = 0; runner_->ok() && round < rounds.count; ++round) {
+      stage.to = stage.from + share;
       (*term)->StartRound(round, coarse_frames_, coarse);
       runner_->Run(stage, coarse);
+      stage.from = stage.to;
     }
   }
 }
