@@ -6,11 +6,13 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "geometry/base/check.h"
 #include "geometry/body/posed_body.h"
+#include "pipelines/track/track_request.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
@@ -67,8 +69,10 @@ class LiveTrackerObject {
       : body_(BodyFrom(body)) {
     LiveTrackerInput input;
     input.body = body_.get();
-    input.landmarks = ConventionFrom(names).second;
     LiveTrackerOptions options;
+    std::string convention;
+    std::tie(convention, input.landmarks) = ConventionFrom(names);
+    options.solve.straight_knees_weight = StraightKneesWeight({}, convention);
     TakeCamera(camera, image_size, weak, &input, &options);
     options.lag = lag;
     options.iterations = iterations;

@@ -303,11 +303,15 @@ TEST(RecipeCharts, TexelDensityAndDistortion) {
       EXPECT_TRUE(std::abs(mean_anisotropy - 1.09) < 0.02 || std::abs(mean_anisotropy - 1.24) < 0.02)
           << mean_anisotropy;
     } else if (part == 3 || part == 4) {
-      EXPECT_NEAR(density, 1.5, 0.02);
+      EXPECT_NEAR(density, 1.5 / 1.015, 0.02);
       EXPECT_TRUE(mean_anisotropy > 1.03 && mean_anisotropy < 1.09) << mean_anisotropy;
     } else if (part >= 23) {
       EXPECT_NEAR(density, 1.5, 0.025);
       EXPECT_NEAR(mean_anisotropy, 1.09, 0.01);
+    } else if (part >= 15) {  // arms: stretched after the charts were made
+      EXPECT_NEAR(density, 0.97, 0.02);
+      EXPECT_GT(mean_anisotropy, 1.0);
+      EXPECT_LT(mean_anisotropy, 1.08);
     } else {
       EXPECT_NEAR(density, 1, 0.02);
       EXPECT_GT(mean_anisotropy, 1.0);

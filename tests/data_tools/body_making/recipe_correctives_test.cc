@@ -95,12 +95,12 @@ TEST(RecipeCorrectives, VolumeKeptUnderBends) {
   const Row rows[] = {
       {"one knee 90", {{"l_knee", {90, 0, 0}}}, .996, 1.000},
       {"both knees 90", {{"l_knee", {90, 0, 0}}, {"r_knee", {90, 0, 0}}}, .991, 1.001},
-      {"hip and knee 90", {{"l_hip", {-90, 0, 0}}, {"l_knee", {90, 0, 0}}}, .961, .990},
+      {"hip and knee 90", {{"l_hip", {-90, 0, 0}}, {"l_knee", {90, 0, 0}}}, .961, .989},
       {"squat",
        {{"l_hip", {-100, 0, 0}}, {"r_hip", {-100, 0, 0}}, {"l_knee", {110, 0, 0}}, {"r_knee", {110, 0, 0}}},
        .914,
-       .975},
-      {"both elbows 120", {{"l_elbow", {0, -120, 0}}, {"r_elbow", {0, 120, 0}}}, .993, .997},
+       .974},
+      {"both elbows 120", {{"l_elbow", {0, -120, 0}}, {"r_elbow", {0, 120, 0}}}, .993, .996},
       {"arms down", {{"l_shoulder", {0, 0, -75}}, {"r_shoulder", {0, 0, 75}}}, .981, .985},
       {"arms overhead", {{"l_shoulder", {0, 0, 80}}, {"r_shoulder", {0, 0, -80}}}, 1.004, 1.020},
   };

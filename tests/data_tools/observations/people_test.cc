@@ -64,7 +64,7 @@ TEST(People, AGapIsBridgedAndABlipIsNot) {
 TEST(People, IdentitiesOfTheDetectorWin) {
   PeopleSequence people = Clip(4);
   for (int t = 0; t < 4; ++t) {
-    people.frames[t] = {Stick(300, 400), Stick(320, 390)};
+    people.frames[t] = {Stick(300, 400), Stick(420, 390)};
     people.frames[t][0].identity = t < 2 ? 1 : 2;
     people.frames[t][1].identity = t < 2 ? 2 : 1;
   }
