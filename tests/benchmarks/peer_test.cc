@@ -26,8 +26,8 @@ std::unique_ptr<WorkProblem> Problem(int frames, const std::string& noise) {
 }
 
 SolveReport Solve(SequenceProblem* problem, Engine engine) {
-  engine.options.function_tolerance = 1e-8;
-  engine.options.max_iterations = 100;
+  engine.options.function_tolerance = 1e-10;
+  engine.options.max_iterations = 300;
   return engine.solve(problem, engine.options);
 }
 
