@@ -14,7 +14,7 @@ namespace bodyloom::clip_clothes_test {
 namespace {
 
 constexpr int kFrames = 8;
-constexpr double kLength_m = 0.55, kFullness = 0.5;
+constexpr double kLength_m = 0.55, kFullness = 0.7;
 
 /// Someone who turns to and fro.
 Track Turning() {
