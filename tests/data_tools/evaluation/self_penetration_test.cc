@@ -419,8 +419,8 @@ TEST(SelfPenetration, NaturalPosesHaveNone) {
 
 /// The left arm hangs and is pressed further in, degree by degree. The forearm enters the trunk's side from outside, so
 /// every radian takes it as much deeper as the place that is deepest is away from the shoulder: more than the elbow is,
-/// less than the wrist. Over 8°, because the wrist hangs beside the hip, where the trunk's part ends, and there a vertex
-/// more may come inside from one degree to the next.
+/// less than the wrist. Over 8°, because the wrist hangs beside the hip, where the trunk's part ends, and there another
+/// vertex may come inside from one degree to the next.
 TEST(SelfPenetration, AForearmPressedIntoTheTrunkGoesAsDeepAsItsAngleSays) {
   const BodyModel& body = BuiltinBody();
   const std::vector<std::string> names = PartsOfBody(body).names;

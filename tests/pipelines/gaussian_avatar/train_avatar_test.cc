@@ -81,7 +81,8 @@ TEST(TrainAvatar, EndsWhereFramesHeldOutGainNothing) {
   request.train = {"0-1"}, request.steps = 20000;
   const TrainAvatarSummary summary = TrainAvatar(request);
   EXPECT_LT(summary.steps, 10000);
-  // The plateau is found in the smoothed losses, the best person by a single one: it may be that of the last evaluation.
+  // The plateau is found in the smoothed losses, the best person by a single one: it may be that of the evaluation
+  // that starts the cooldown.
   EXPECT_GE(summary.cooldown_step, summary.best_step);
   EXPECT_GT(summary.steps, summary.cooldown_step);
   EXPECT_EQ(summary.best_step % 250, 0);

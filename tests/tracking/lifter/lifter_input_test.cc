@@ -198,7 +198,8 @@ TEST(LifterInput, PartsOfTheBodyGiveNearlyTheSameScale) {
     KeepOnly(kept, &part);
     return MakeLifterInput(part).scale[0] / scale;
   };
-  // The shares are those that the network was trained with first, of a body with shins 4 % longer and arms 5 to 7 % shorter.
+  // The shares are those that the network was trained with first, of a body with shins 4 % longer and arms 5 to 7 %
+  // shorter.
   EXPECT_NEAR(scale_of({shoulder, shoulder + 1, hip, hip + 1}), 1.022, 0.01);
   EXPECT_NEAR(scale_of({hip, knee, ankle}), 0.986, 0.01);
   EXPECT_NEAR(scale_of({hip, knee, hip + 1, knee + 1}), 1.014, 0.01);
