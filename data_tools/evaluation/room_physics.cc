@@ -170,7 +170,7 @@ int CountUnexplained(const Surface& surface) {
     const double to = surface.SecondsAt(end < h.size() && surface.Continues(end) ? end : end - 1);
     for (size_t i = begin; i < end; ++i) {
       const double t = surface.SecondsAt(i);
-      if (h[i] > kContactM + 0.5 * kGravity * (t - from) * (to - t)) ++count;
+      if (h[i] > kContactM + RiseInFlight(t - from, to - t)) ++count;
     }
     begin = end;
   }

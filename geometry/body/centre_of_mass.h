@@ -48,4 +48,8 @@ Eigen::Vector3d CentreOfMass(const MatrixX3d& joints, const Eigen::VectorXd& mas
 /// supported there: at rest straight below c. NaN in free fall (g + a_v ≤ 0), where nothing supports it.
 Eigen::Vector2d ZeroMomentPoint(const Eigen::Vector3d& centre_of_mass, const Eigen::Vector3d& acceleration);
 
+/// Rise of the centre of mass of a body that left the ground `since_s` ago and returns in `until_s`, metres:
+/// ½ g · since · until. Points of the surface rise by no more, save for how the limbs are drawn up.
+inline double RiseInFlight(double since_s, double until_s) { return 0.5 * kGravity * since_s * until_s; }
+
 }  // namespace bodyloom

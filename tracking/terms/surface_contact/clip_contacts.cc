@@ -8,6 +8,7 @@
 
 #include "geometry/base/parallel.h"
 #include "geometry/base/percentile.h"
+#include "geometry/body/centre_of_mass.h"
 #include "geometry/scene/camera_path.h"
 #include "tracking/problem/mass_centre.h"
 #include "tracking/problem/track_input.h"

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "geometry/body/body_model.h"
-#include "geometry/body/centre_of_mass.h"
 #include "tracking/problem/body_points.h"
 #include "tracking/problem/sequence_problem.h"
 
@@ -24,10 +23,6 @@ struct ContactPoint {
 
 /// Ascending by vertex, each vertex once.
 std::vector<ContactPoint> FindContactPoints(const BodyModel& model);
-
-/// Rise of the centre of mass of a body that left the ground `since_s` ago and returns in `until_s`, metres:
-/// ½ g · since · until. Contact points rise by no more, save for how the limbs are drawn up.
-inline double RiseInFlight(double since_s, double until_s) { return 0.5 * kGravity * since_s * until_s; }
 
 /// Places of contact points in the frames of a problem; scratch memory is reused between frames.
 class ContactPlaces {

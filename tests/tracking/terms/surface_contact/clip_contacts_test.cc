@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "data_tools/body/builtin_body.h"
+#include "geometry/body/centre_of_mass.h"
 #include "geometry/math/rotation.h"
 #include "tracking/initialise/lifted_landmarks.h"
 #include "tracking/initialise/lifted_start.h"
