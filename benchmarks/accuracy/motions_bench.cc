@@ -2,15 +2,17 @@
 /// bodyloom_bench_motions: motion that the split keeps for testing, by class, through the tracker, with and without the
 /// clip's own vertical and ground.
 ///
-///   bodyloom_bench_motions --motions FOLDER[,FOLDER…] [--frames 240] [--elevation 8,30] [--lifter built-in|none|FILE]
-///                          [--worst 0] [--json F]
+///   bodyloom_bench_motions --motions FOLDER[,FOLDER…] [--frames 240] [--elevation 8,30] [--ground with,without]
+///                          [--lifter built-in|none|FILE] [--worst 0] [--json F]
 ///
-/// Every test clip (its first frames at 30 a second) in front of a synthetic camera of known focal length, with a
+/// --ground: with (all that the tracker does), without, without-contacts (neither surface contacts nor balance),
+/// without-balance. Every test clip (its first frames at 30 a second) in front of a synthetic camera of known focal length, with a
 /// detector's noise (data_tools/synthesis/clips/detection_noise.h), its toes and heels left out. pa: PA-MPJPE, mpjpe:
 /// mid-hip aligned, both of COCO-17 in mm. pa_over_120: frames in which pa is above 120 mm, of all the class' frames.
 /// --worst N names the N clips whose worst frame is the worst. slide: mean speed of the ankles, m/s, in frames in which
-/// the true ones stand (below 0.1 m/s). ground: clips in which one was found. Means over clips; the body's stature is
-/// the true one.
+/// the true ones stand (below 0.1 m/s). ground: clips in which one was found. The other columns are of the room that the
+/// track states (data_tools/evaluation/room_errors.h, room_physics.h), tilt of every clip, what follows of clips with a
+/// ground. Means over clips; the body's stature is the true one.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -23,6 +25,8 @@
 #include "benchmarks/accuracy/lifter_oracle.h"
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/evaluation/metrics.h"
+#include "data_tools/evaluation/room_errors.h"
+#include "data_tools/evaluation/room_physics.h"
 #include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/motion/motion_library.h"
 #include "data_tools/motion/motion_tools.h"
@@ -35,9 +39,35 @@ namespace {
 
 constexpr double kFps = 30, kStandingSpeed = 0.1;
 
+/// Values of the room, in the order of the table's columns.
+const std::vector<std::string> kRoomValues = {"room_g_mpjpe_mm",
+                                              "tilt_deg",
+                                              "knee_bias_deg",
+                                              "trunk_err_deg",
+                                              "ankle_height_err_mm",
+                                              "lowest_point_mm",
+                                              "hover_unexplained_percent",
+                                              "ground_penetration_p95_mm"};
+constexpr size_t kOfAnyWorld = 4;  ///< so many of them need no ground
+
+class Mean {
+ public:
+  void Add(double value) {
+    if (!std::isfinite(value)) return;
+    sum_ += value;
+    ++count_;
+  }
+  [[nodiscard]] double value() const { return count_ > 0 ? sum_ / count_ : kNotMeasured; }
+
+ private:
+  double sum_ = 0;
+  int count_ = 0;
+};
+
 struct Sums {
-  double pa = 0, mpjpe = 0, slide = 0, seconds = 0;
-  int clips = 0, sliding_clips = 0, grounds = 0;
+  Mean pa, mpjpe, slide, seconds;
+  std::vector<Mean> room = std::vector<Mean>(kRoomValues.size());
+  int clips = 0, grounds = 0;
   std::vector<double> pa_of_frame;  ///< of all clips, metres
 };
 
@@ -64,8 +94,18 @@ double Slide(const Track& track, const Track& truth) {
   return count > 0 ? sum / count : kNotMeasured;
 }
 
+void AddRoom(const Track& track, const SynthClip& clip, bool has_ground, Sums* sums) {
+  Evaluation evaluation;
+  AddRoomErrors(track, clip.truth.coco17, clip.up_in_camera, track.motion.timestamps, &evaluation);
+  AddRoomPhysics(RoomPhysicsOnGround(track, BuiltinBody()), &evaluation);
+  for (size_t i = 0; i < kRoomValues.size(); ++i) {
+    if (i < kOfAnyWorld || has_ground) sums->room[i].Add(evaluation.Value(kRoomValues[i]));
+  }
+}
+
 /// Returns the clip's PA-MPJPE frame by frame, metres; none when nothing could be tracked.
-std::vector<double> TrackAndAdd(const SynthClip& clip, const LifterWeights* lifter, bool ground, Sums* sums) {
+std::vector<double> TrackAndAdd(const SynthClip& clip, const LifterWeights* lifter, const std::string& ground,
+                                Sums* sums) {
   TrackSequenceInput input;
   input.body = &BuiltinBody();
   input.prior = &BuiltinPosePrior();
@@ -74,25 +114,27 @@ std::vector<double> TrackAndAdd(const SynthClip& clip, const LifterWeights* lift
   input.camera = clip.truth.camera;
   TrackSequenceOptions options;
   options.estimate_uncertainty = false;
-  if (!ground) options.ground = GroundOptions::Off();
+  if (ground == "without") options.ground = GroundOptions::Off();
+  if (ground == "without-contacts") options.ground.surface_weight = options.ground.balance_weight = 0;
+  if (ground == "without-balance") options.ground.balance_weight = 0;
   const TrackSequenceResult result = FitClip(input, options);
   if (!result.summary.IsUsable()) return {};
   const std::vector<int> hips = {11, 12};
   const auto &found = result.track.coco17, &truth = clip.truth.coco17;
   ++sums->clips;
   const PositionError pa = ProcrustesPositionError(found, truth);
-  sums->pa += 1e3 * pa.mean;
+  sums->pa.Add(1e3 * pa.mean);
   sums->pa_of_frame.insert(sums->pa_of_frame.end(), pa.of_frame.begin(), pa.of_frame.end());
-  sums->mpjpe += 1e3 * MeanPositionError(RelativeTo(found, RootPositions(found, hips)),
-                                         RelativeTo(truth, RootPositions(truth, hips)))
-                           .mean;
-  const double slide = Slide(result.track, clip.truth);
-  if (std::isfinite(slide)) {
-    sums->slide += slide;
-    ++sums->sliding_clips;
-  }
-  sums->grounds += result.summary.ground.has_plane ? 1 : 0;
-  for (const auto& [stage, seconds] : result.summary.seconds) sums->seconds += seconds;
+  sums->mpjpe.Add(1e3 * MeanPositionError(RelativeTo(found, RootPositions(found, hips)),
+                                          RelativeTo(truth, RootPositions(truth, hips)))
+                            .mean);
+  sums->slide.Add(Slide(result.track, clip.truth));
+  const bool has_ground = result.summary.ground.has_plane;
+  sums->grounds += has_ground ? 1 : 0;
+  if (ground != "without" && result.track.world.has_value()) AddRoom(result.track, clip, has_ground, sums);
+  double seconds = 0;
+  for (const auto& [stage, of_stage] : result.summary.seconds) seconds += of_stage;
+  sums->seconds.Add(seconds);
   return pa.of_frame;
 }
 
@@ -107,7 +149,7 @@ Worst WorstOf(const std::vector<double>& pa_of_frame, const std::string& clip, c
 }
 
 void Run(const BenchArguments& arguments, const std::string& command) {
-  std::map<std::pair<std::string, std::string>, std::map<std::string, Sums>> groups;  // by (camera, ground), by class
+  std::map<std::pair<std::string, std::string>, std::map<std::string, Sums>> groups;  // by (camera, --ground), by class
   std::vector<Worst> worst;
   const LifterWeights* lifter = LifterOf(arguments.Text("lifter"));
   MotionLibraryOptions library;
@@ -122,11 +164,10 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       options.camera.yaw_deg = 30;
       SynthClip synthetic = MakeSynthClip(BuiltinBody(), motion, options);
       LeaveOutFeet(&synthetic.keypoints);
-      for (const bool ground : {true, false}) {
+      for (const std::string& ground : arguments.List("ground")) {
         const std::vector<double> pa_of_frame =
-            TrackAndAdd(synthetic, lifter, ground,
-                        &groups[{elevation, ground ? "vertical and ground" : "neither"}][clip.motion_class]);
-        if (ground && !pa_of_frame.empty()) {
+            TrackAndAdd(synthetic, lifter, ground, &groups[{elevation, ground}][clip.motion_class]);
+        if (ground == "with" && !pa_of_frame.empty()) {
           worst.push_back(WorstOf(pa_of_frame, clip.motion_class + " " + clip.name, elevation));
         }
       }
@@ -138,15 +179,16 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   report.command = command;
   report.label_columns = {"class", "clips"};
   report.value_columns = {"pa_mpjpe_mm", "pa_over_120_percent", "mpjpe_mm", "slide_ms", "ground", "s"};
+  report.value_columns.insert(report.value_columns.end(), kRoomValues.begin(), kRoomValues.end());
   for (const auto& [key, classes] : groups) {
     for (const auto& [name, sums] : classes) {
-      const double n = std::max(1, sums.clips);
       BenchRow row;
-      row.group = Concatenate("camera ", key.first, " degrees from above, ", key.second);
+      row.group = Concatenate("camera ", key.first, " degrees from above, ground: ", key.second);
       row.labels = {name, std::to_string(sums.clips)};
-      row.values = {sums.pa / n,          PercentAbove(sums.pa_of_frame, kAnotherPose_m),
-                    sums.mpjpe / n,       sums.sliding_clips > 0 ? sums.slide / sums.sliding_clips : kNotMeasured,
-                    double(sums.grounds), sums.seconds / n};
+      row.values = {sums.pa.value(),      PercentAbove(sums.pa_of_frame, kAnotherPose_m),
+                    sums.mpjpe.value(),   sums.slide.value(),
+                    double(sums.grounds), sums.seconds.value()};
+      for (const Mean& mean : sums.room) row.values.push_back(mean.value());
       report.rows.push_back(row);
     }
   }
@@ -164,6 +206,7 @@ int main(int argc, char** argv) {
                              {{"motions", bodyloom::SharedMotions()},
                               {"frames", "240"},
                               {"elevation", "8,30"},
+                              {"ground", "with,without"},
                               {"lifter", "built-in"},
                               {"worst", "0"},
                               {"json", ""}},

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "geometry/scene/camera.h"
@@ -24,6 +25,17 @@ namespace bodyloom {
 struct FrameGround {
   Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< unit
   double level_m = 0;
+  Eigen::Vector3d measured_up = Eigen::Vector3d(0, -1, 0);  ///< the vertical without what touches the ground, unit
+  double measured_up_sigma_rad = 0;                         ///< its σ per direction across it
+  /// σ of up, per direction across it, and of level_m for this vertical.
+  double up_sigma_rad = 0, level_sigma_m = 0;
+  /// Variance of the plane's height above x by what touched it: x · P x − 2 q · x + s. Zero where it is given.
+  Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d q = Eigen::Vector3d::Zero();
+  double s = 0;
+  [[nodiscard]] double HeightVariance(const Eigen::Vector3d& x) const {
+    return std::max(0.0, x.dot(P * x) - 2 * q.dot(x) + s);
+  }
 };
 
 /// The terms of one frame, and its camera pose if the camera moves. Borrowed pointers outlive the cost.

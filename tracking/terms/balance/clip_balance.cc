@@ -27,6 +27,7 @@ using Eigen::Vector3d;
 
 namespace {
 
+constexpr double kTiltSigmas = 2;    ///< of the vertical, by which a point may be higher the farther it is
 constexpr double kMinWeight = 0.02;  ///< frames with less have no term
 
 /// The point of a hull nearest to a point outside of it: share · corner `a` + (1 − share) · corner `b`.
@@ -85,9 +86,14 @@ void ClipBalance::StartRound(int /*round*/, const std::vector<int>& /*frames*/, 
     if (weight < kMinWeight || !(lift > 0)) return;
     std::vector<Vector2d> touching;
     std::vector<int> index;
+    Eigen::Index lowest = 0;
+    (up.transpose() * places[t]).minCoeff(&lowest);
+    const Vector3d bottom = places[t].col(lowest);
     for (size_t k = 0; k < points_.size(); ++k) {
       const Vector3d place = places[t].col(static_cast<Eigen::Index>(k));
-      if (up.dot(place) - frame.ground->level_m > kTouchingM) continue;
+      const double away = Vector2d(e1.dot(place - bottom), e2.dot(place - bottom)).norm();
+      const double tilt_m = kTiltSigmas * frame.ground->measured_up_sigma_rad * away;
+      if (up.dot(place) - frame.ground->level_m > kTouchingM + tilt_m) continue;
       touching.emplace_back(e1.dot(place), e2.dot(place));
       index.push_back(points_[k].vertex);
     }

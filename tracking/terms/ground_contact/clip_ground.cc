@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <span>
 
 #include "geometry/base/check.h"
@@ -31,6 +33,25 @@ Vector3d InCamera(const FrameData& frame, const Vector3d& direction) {
                                             : frame.camera_from_scene->camera_from_world_rotation * direction;
 }
 
+/// The ground on which the body rests with any part, and the stances on it.
+GroundPlane RestOn(const SupportLevel& level, const std::vector<std::array<FootPlace, 2>>& feet,
+                   const std::vector<double>& timestamps, const JoinedVertical& vertical) {
+  GroundPlane ground = StandOnPlane(feet, timestamps, vertical.up, level.level_m + kAnkleHeight, {});
+  ground.found = true;
+  ground.up_sigma_rad = std::sqrt(2) * vertical.sigma_rad;
+  ground.offset_sigma_m = level.sigma_m;
+  return ground;
+}
+
+/// The leg, 0: left, to which a joint belongs; -1: to none.
+int LegOf(const std::string& joint) {
+  for (const char* part : {"hip", "knee", "ankle", "foot"}) {
+    if (joint == std::string("l_") + part) return 0;
+    if (joint == std::string("r_") + part) return 1;
+  }
+  return -1;
+}
+
 /// The lifter's up direction, in the scene.
 UpEstimate UpInScene(std::span<const LiftedFrame> lifted, std::span<const FrameData> frames) {
   if (frames.front().camera_from_scene == nullptr) return EstimateUp(lifted);
@@ -50,6 +71,7 @@ ClipGround::ClipGround(const ClipTermInput& clip)
       lines_(known_ == nullptr && clip.input.camera_from_scene == nullptr ? clip.input.picture_vertical : nullptr),
       lifted_(clip.lifted.frames),
       landmarks_(clip.lifted_landmarks),
+      points_(FindContactPoints(*clip.layout.model)),
       why_not_(WhyNoGround(clip.input, clip.options)) {}
 
 std::unique_ptr<ClipTerm> MakeClipGround(const ClipTermInput& clip) { return std::make_unique<ClipGround>(clip); }
@@ -127,6 +149,59 @@ GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& 
   return EstimateGroundPlane(feet, timestamps, up, options);
 }
 
+std::vector<LowestPoint> ClipGround::LowestPoints(const SequenceProblem& problem, const std::vector<int>& index,
+                                                  const std::vector<std::array<FootPlace, 2>>& feet,
+                                                  const Vector3d& up) const {
+  const BodyModel& body = *problem.layout.model;
+  const int head = body.FindJoint("head"), wrists[2] = {body.FindJoint("l_wrist"), body.FindJoint("r_wrist")};
+  std::vector<LowestPoint> lowest(index.size());
+  if (points_.empty()) return lowest;
+  ContactPlaces places;
+  std::vector<Eigen::Matrix3Xd> at(index.size());
+  for (size_t i = 0; i < index.size(); ++i) places.Evaluate(problem, index[i], points_, &at[i]);
+  const auto highest = [&](size_t i, int joint) {
+    double height = -std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < points_.size(); ++k) {
+      if (points_[k].joint == joint) height = std::max(height, up.dot(at[i].col(static_cast<Eigen::Index>(k))));
+    }
+    return height;
+  };
+  for (size_t i = 0; i < index.size(); ++i) {
+    Eigen::Index k = 0;
+    (up.transpose() * at[i]).minCoeff(&k);
+    const size_t before = i > 0 ? i - 1 : i, after = i + 1 < index.size() ? i + 1 : i;
+    const double seconds = problem.timestamps[index[after]] - problem.timestamps[index[before]];
+    const double moved = (at[after].col(k) - at[before].col(k)).norm();
+    // Who hangs from something has both hands overhead, and legs that rest on nothing.
+    const double above = highest(i, head);
+    const bool may_hang = highest(i, wrists[0]) > above && highest(i, wrists[1]) > above;
+    const int leg = LegOf(body.data().joint_names[points_[static_cast<size_t>(k)].joint]);
+    const bool is_seen = leg < 0 || feet[i][leg].seen;
+    lowest[i] = {problem.timestamps[index[i]], at[i].col(k), seconds > 0 ? moved / seconds : 0, is_seen && !may_hang};
+  }
+  return lowest;
+}
+
+void ClipGround::StandOnFloors(const SupportLevels& levels, const std::vector<int>& index,
+                               const std::vector<int>& frames, Shot* shot, SequenceProblem* coarse,
+                               SequenceProblem* problem) const {
+  shot->levels = levels.levels;
+  for (const SupportLevel& level : levels.levels) {
+    shot->floors.push_back(std::make_unique<FrameGround>(
+        FrameGround{shot->ground.normal, level.level_m, shot->joined.up, shot->joined.sigma_rad,
+                    shot->ground.up_sigma_rad / std::sqrt(2), shot->ground.offset_sigma_m}));
+  }
+  for (size_t i = 0; i < index.size(); ++i) {
+    FrameGround* floor = shot->floors[levels.of_frame[i]].get();
+    coarse->frames[index[i]].ground = floor;
+    // Frames between two coarse ones belong to the nearer one.
+    const int here = frames[index[i]];
+    const int from = i > 0 ? (frames[index[i - 1]] + here) / 2 + 1 : shot->begin;
+    const int to = i + 1 < index.size() ? (here + frames[index[i + 1]]) / 2 + 1 : shot->end;
+    for (int t = from; t < to; ++t) problem->frames[t].ground = floor;
+  }
+}
+
 bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coarse, SequenceProblem* problem) {
   if (lifted_.empty() || !why_not_.empty()) return false;
   const std::vector<std::array<FootPlace, 2>> all_feet =
@@ -136,7 +211,7 @@ bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coar
   bool any = false;
   for (Shot& shot : shots_) {
     if (!shot.up.found) {
-      shot.ground.why = "the vertical is not clear";
+      shot.why = "the vertical is not clear";
       continue;
     }
     std::vector<std::array<FootPlace, 2>> feet;
@@ -157,16 +232,22 @@ bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coar
     }
     JoinLines(*coarse, &shot);
     shot.ground = PlaneUnder(feet, timestamps, shot.joined);
+    shot.why = shot.ground.why;
+    const std::optional<double> level =
+        shot.ground.found ? std::optional(shot.ground.offset_m - kAnkleHeight) : std::nullopt;
+    const SupportLevels supports = FindSupportLevels(LowestPoints(*coarse, index, feet, shot.ground.normal),
+                                                     shot.ground.normal, shot.joined.sigma_rad, level);
+    if (!shot.ground.found && !supports.levels.empty()) {
+      shot.ground = RestOn(supports.levels.front(), feet, timestamps, shot.joined);
+      shot.why = supports.why;
+    }
     if (!shot.ground.found) {
       SetUpright(shot, shot.joined.up, problem);
       continue;
     }
     any = true;
     SetUpright(shot, shot.ground.normal, problem);
-    shot.floor = std::make_unique<FrameGround>();
-    *shot.floor = {shot.ground.normal, shot.ground.offset_m - kAnkleHeight};
-    for (int t = shot.begin; t < shot.end; ++t) problem->frames[t].ground = shot.floor.get();
-    for (const int i : index) coarse->frames[i].ground = shot.floor.get();
+    StandOnFloors(supports, index, frames, &shot, coarse, problem);
     for (const Stance& stance : shot.ground.stances) {
       const int first = frames[index[stance.begin]], last = frames[index[stance.end - 1]];
       for (int i = stance.begin; i < stance.end; ++i) Hold(stance, shot.ground, &coarse->frames[index[i]]);
@@ -206,7 +287,7 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
                                         [](const Shot& a, const Shot& b) { return a.end - a.begin < b.end - b.begin; });
   if (longest == shots_.end()) return;
   result.has_up = longest->up.found;
-  result.up = longest->ground.found ? longest->ground.normal : longest->joined.up;
+  result.up = longest->floors.empty() ? longest->joined.up : longest->floors.front()->up;
   result.up_spread_deg = longest->up.spread_deg;
   result.given = known_ != nullptr;
   result.up_sigma_deg =
@@ -223,12 +304,13 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
   PlaceOnFloor(problem, result.up, &result.stances);
   const GroundPlane& ground = longest->ground;
   result.has_plane = ground.found;
-  result.why = ground.why;
+  result.why = longest->why;
   if (!ground.found) return;
-  result.camera_height_m = -longest->floor->level_m;
-  if (known_ == nullptr) result.up_sigma_deg = kUpSigmaDegrees * ground.up_sigma_rad;
+  result.camera_height_m = -longest->floors.front()->level_m;
+  const FrameGround& floor = *longest->floors.front();
+  if (known_ == nullptr) result.up_sigma_deg = kUpSigmaDegrees * std::sqrt(2) * floor.up_sigma_rad;
   const bool on_known = std::isnan(ground.offset_sigma_m);
-  result.height_sigma_m = on_known && known_ != nullptr ? known_->height_sigma_m : ground.offset_sigma_m;
+  result.height_sigma_m = on_known && known_ != nullptr ? known_->height_sigma_m : floor.level_sigma_m;
   result.height_spread_m = ground.spread_m;
 }
 

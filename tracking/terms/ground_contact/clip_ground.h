@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The vertical and the ground of a clip, as terms of its problem: upright normals and standing feet
-/// (initialise/ground_plane.h, terms/upright.h, ground_contact.h). Every shot has its own.
+/// (initialise/ground_plane.h, terms/upright.h, ground_contact.h). Every shot has its own. Where standing feet show no
+/// plane, the level is that on which the body rests with any part, and further levels are looked for in every shot
+/// (initialise/support_levels.h).
 #pragma once
 
 #include <array>
@@ -10,11 +12,13 @@
 
 #include "tracking/initialise/ground_plane.h"
 #include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/initialise/support_levels.h"
 #include "tracking/problem/clip_term.h"
 #include "tracking/problem/track_input.h"
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
 #include "tracking/room/picture_vertical.h"
+#include "tracking/terms/surface_contact/contact_points.h"
 
 namespace bodyloom {
 
@@ -41,8 +45,10 @@ class ClipGround : public ClipTerm {
     UpEstimate up;          ///< the lifter's, or as given
     JoinedVertical joined;  ///< with the lines of the picture
     GroundPlane ground;
-    std::unique_ptr<FrameGround> floor;  ///< under the ground's ankles; frames point to it
-    std::vector<StandingFoot> stances;   ///< without their places
+    std::string why;                                   ///< the evidence for the ground, or the reason why there is none
+    std::vector<SupportLevel> levels;                  ///< the main one first; none without a ground
+    std::vector<std::unique_ptr<FrameGround>> floors;  ///< by level; frames point to theirs
+    std::vector<StandingFoot> stances;                 ///< without their places
   };
   /// Joins the lifter's vertical with the picture's lines, for the focal length of `problem`.
   void JoinLines(const SequenceProblem& problem, Shot* shot) const;
@@ -53,6 +59,15 @@ class ClipGround : public ClipTerm {
   void PlaceOnFloor(const SequenceProblem& problem, const Eigen::Vector3d& up,
                     std::vector<StandingFoot>* stances) const;
   void SetUpright(const Shot& shot, const Eigen::Vector3d& up, SequenceProblem* problem) const;
+  /// The lowest point of the body in frames `index` of a problem; no evidence where its leg's ankle is not `seen`, as
+  /// that leg is where the pose prior has it.
+  [[nodiscard]] std::vector<LowestPoint> LowestPoints(const SequenceProblem& problem, const std::vector<int>& index,
+                                                      const std::vector<std::array<FootPlace, 2>>& feet,
+                                                      const Eigen::Vector3d& up) const;
+  /// Lets the frames of a shot point to the floors of its levels. `levels` are by the frames `index` of `coarse`, which
+  /// are `frames` of the clip.
+  void StandOnFloors(const SupportLevels& levels, const std::vector<int>& index, const std::vector<int>& frames,
+                     Shot* shot, SequenceProblem* coarse, SequenceProblem* problem) const;
   void Hold(const Stance& stance, const GroundPlane& ground, FrameData* frame) const;
 
   const GroundOptions options_;
@@ -62,6 +77,7 @@ class ClipGround : public ClipTerm {
   double focal_log_sigma_ = 0;    ///< of the focal length that the fit begins with; 0: known
   const std::vector<LiftedFrame>& lifted_;
   const LiftedLandmarks& landmarks_;
+  const std::vector<ContactPoint> points_;
   std::vector<Shot> shots_;
   std::string why_not_;
   int contact_frames_ = 0;

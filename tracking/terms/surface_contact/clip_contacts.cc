@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/terms/surface_contact/clip_contacts.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "geometry/base/parallel.h"
 #include "geometry/base/percentile.h"
 #include "geometry/body/centre_of_mass.h"
 #include "geometry/scene/camera_path.h"
+#include "tracking/initialise/ground_plane.h"
 #include "tracking/problem/mass_centre.h"
+#include "tracking/problem/robust.h"
 #include "tracking/problem/track_input.h"
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
@@ -20,10 +24,12 @@
 namespace bodyloom {
 
 using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kMinUpSigma = 1e-4;
 constexpr double kLowestM = 0.02;  ///< points of a hovering body within this of its lowest one touch
 
 /// Heights of all points in all frames above each frame's ground; infinite where it is not known.
@@ -71,7 +77,8 @@ std::vector<char> FindHovering(const SequenceProblem& problem, const CompiledPoi
     const std::vector<double>& at = problem.timestamps;
     const double from = at[goes_on(begin) ? begin - 1 : begin], to = at[goes_on(end) ? end : end - 1];
     for (size_t t = begin; t < end; ++t) {
-      const bool flies = falls && lowest[t] <= kTouchingM + RiseInFlight(at[t] - from, to - at[t]);
+      const bool flies =
+          (falls || to - from <= kShortFlight_s) && lowest[t] <= kTouchingM + RiseInFlight(at[t] - from, to - at[t]);
       hovers[t] = !flies && lowest[t] <= kMaxHoverM ? 1 : 0;
     }
     begin = end;
@@ -100,41 +107,134 @@ std::vector<char> FindTouching(const SequenceProblem& problem, const std::vector
   return touches;
 }
 
-/// Mean height of the soles that touch in a frame above where they stand flat, or of the lowest point if only others
-/// do; NaN if nothing touches.
-double TouchingHeight(const std::vector<ContactPoint>& points, const std::vector<char>& touches,
-                      const VectorXd& heights, double lowest) {
-  double sum = 0;
-  int soles = 0, others = 0;
+/// What touches the ground in one frame: the soles, or the lowest point if only others do.
+struct Touch {
+  bool is_bound = false;                ///< nothing touches: the ground is at most as high
+  Vector3d place_m = Vector3d::Zero();  ///< of the ground under it
+  double seconds = 0;
+};
+
+Touch FindTouch(const SequenceProblem& problem, const std::vector<ContactPoint>& points,
+                const std::vector<char>& touches, const Heights& all, size_t t) {
+  const Vector3d up = problem.frames[t].ground->up;
+  Touch touch;
+  Vector3d soles = Vector3d::Zero(), lowest = Vector3d::Zero();
+  int num_soles = 0;
+  double minimum = std::numeric_limits<double>::infinity();
   for (size_t k = 0; k < touches.size(); ++k) {
     if (touches[k] == 0) continue;
-    ++(points[k].sole ? soles : others);
-    if (points[k].sole) sum += heights[static_cast<Eigen::Index>(k)] - points[k].rest_m;
+    const auto c = static_cast<Eigen::Index>(k);
+    if (points[k].sole) {
+      soles += all.places[t].col(c) - points[k].rest_m * up;
+      ++num_soles;
+    } else if (all.heights[t][c] < minimum) {
+      minimum = all.heights[t][c];
+      lowest = all.places[t].col(c);
+    }
   }
-  return soles > 0 ? sum / soles : others > 0 ? lowest : std::numeric_limits<double>::quiet_NaN();
+  touch.is_bound = num_soles == 0 && !std::isfinite(minimum);
+  if (touch.is_bound) {
+    Eigen::Index c = 0;
+    all.heights[t].minCoeff(&c);
+    lowest = all.places[t].col(c);
+  }
+  touch.place_m = num_soles > 0 ? Vector3d(soles / num_soles) : lowest;
+  const bool has_before = t > 0 && problem.cut_before[t] == 0;
+  touch.seconds = has_before ? problem.timestamps[t] - problem.timestamps[t - 1] : 0;
+  return touch;
 }
 
-/// Moves the level of each shot's ground, and standing ankles with it, to the median height of what touches it.
-void LevelGrounds(const std::vector<ContactPoint>& points, const std::vector<std::vector<char>>& touches,
-                  SequenceProblem* problem, Heights* all) {
-  std::map<FrameGround*, std::vector<double>> touching;
-  for (size_t t = 0; t < touches.size(); ++t) {
-    const double height = TouchingHeight(points, touches[t], all->heights[t], all->lowest[t]);
-    if (std::isfinite(height)) touching[problem->frames[t].ground].push_back(height);
+/// Fits the grounds of one shot by Gauss–Newton with weights of Geman–McClure; of bounds, Huber's.
+void FitGrounds(const std::vector<FrameGround*>& grounds, const std::vector<std::vector<Touch>>& touches) {
+  const auto n = static_cast<Eigen::Index>(grounds.size());
+  const Vector3d measured = grounds.front()->measured_up;
+  const double sigma_u = std::max(grounds.front()->measured_up_sigma_rad, kMinUpSigma),
+               depth_m = GroundPlaneOptions().depth_m;
+  const Vector3d e1 = measured.unitOrthogonal(), e2 = measured.cross(e1);
+  VectorXd x(2 + n);
+  const Vector3d up0 = grounds.front()->up / grounds.front()->up.dot(measured);
+  x[0] = e1.dot(up0);
+  x[1] = e2.dot(up0);
+  for (Eigen::Index k = 0; k < n; ++k) x[2 + k] = grounds[k]->level_m / grounds[k]->up.dot(measured);
+  Eigen::MatrixXd H;
+  for (int pass = 0; pass < 10; ++pass) {
+    H = Eigen::MatrixXd::Zero(2 + n, 2 + n);
+    VectorXd rhs = VectorXd::Zero(2 + n);
+    H(0, 0) = H(1, 1) = 1 / (sigma_u * sigma_u);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      // A level that nothing touches stays where it is.
+      H(2 + k, 2 + k) = 1e-6;
+      rhs[2 + k] = 1e-6 * x[2 + k];
+      for (const Touch& touch : touches[k]) {
+        const double along = measured.dot(touch.place_m.normalized()) * depth_m;
+        const double information = 1 / (kTouchSigmaM * kTouchSigmaM + along * along);
+        VectorXd row = VectorXd::Zero(2 + n);
+        row[0] = e1.dot(touch.place_m);
+        row[1] = e2.dot(touch.place_m);
+        row[2 + k] = -1;
+        const double below = touch.is_bound ? kTouchingM : 0;
+        const double residual = measured.dot(touch.place_m) + below + row.dot(x);
+        if (touch.is_bound && residual > 0) continue;
+        const double sigmas = std::abs(residual) * std::sqrt(information);
+        const double robust = touch.is_bound ? std::min(1.0, 3 / sigmas) : GemanMcClure(sigmas * sigmas, 3).weight;
+        const double weight = touch.seconds / kCorrelation_s * information * robust;
+        H += weight * row * row.transpose();
+        rhs -= weight * (measured.dot(touch.place_m) + below) * row;
+      }
+    }
+    x = H.ldlt().solve(rhs);
   }
-  std::map<const FrameGround*, double> higher;
-  for (auto& [ground, heights] : touching) {
-    higher[ground] = Percentile(heights, 50);
-    ground->level_m += higher[ground];
+  const Vector3d up = measured + x[0] * e1 + x[1] * e2;
+  const Eigen::MatrixXd covariance = H.inverse();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    grounds[k]->up = up.normalized();
+    grounds[k]->level_m = x[2 + k] / up.norm();
+    grounds[k]->up_sigma_rad = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
+    grounds[k]->level_sigma_m = std::sqrt(1 / H(2 + k, 2 + k));
+    Eigen::Matrix<double, 3, 2> across;
+    across << e1, e2;
+    grounds[k]->P = across * covariance.topLeftCorner<2, 2>() * across.transpose();
+    grounds[k]->q = across * covariance.block<2, 1>(0, 2 + k);
+    grounds[k]->s = covariance(2 + k, 2 + k);
   }
-  for (size_t t = 0; t < touches.size(); ++t) {
-    FrameData& frame = problem->frames[t];
-    const auto found = higher.find(frame.ground);
-    if (frame.ground == nullptr || found == higher.end()) continue;
-    all->heights[t].array() -= found->second;
-    Eigen::Vector3d up = frame.ground->up;
-    if (frame.camera_from_scene != nullptr) up = frame.camera_from_scene->camera_from_world_rotation * up;
-    for (GroundContact& foot : frame.Get<GroundContactTerm>().feet) foot.target_m += found->second * up;
+}
+
+/// Moves the grounds of each shot to what touches them, and standing ankles with them.
+void MoveGrounds(const std::vector<ContactPoint>& points, const std::vector<std::vector<char>>& touches,
+                 SequenceProblem* problem, Heights* all) {
+  const size_t T = touches.size();
+  for (size_t begin = 0, end = 0; begin < T; begin = end) {
+    std::vector<FrameGround*> grounds;
+    std::vector<std::vector<Touch>> of_ground;
+    for (end = begin; end < T && (end == begin || problem->cut_before[end] == 0); ++end) {
+      FrameGround* ground = problem->frames[end].ground;
+      if (ground == nullptr) continue;
+      auto at = std::find(grounds.begin(), grounds.end(), ground) - grounds.begin();
+      if (at == static_cast<std::ptrdiff_t>(grounds.size())) {
+        grounds.push_back(ground);
+        of_ground.emplace_back();
+      }
+      of_ground[at].push_back(FindTouch(*problem, points, touches[end], *all, end));
+    }
+    if (grounds.empty()) continue;
+    std::vector<FrameGround> before;
+    for (const FrameGround* ground : grounds) before.push_back(*ground);
+    FitGrounds(grounds, of_ground);
+    for (size_t t = begin; t < end; ++t) {
+      FrameData& frame = problem->frames[t];
+      if (frame.ground == nullptr) continue;
+      const FrameGround& old = before[std::find(grounds.begin(), grounds.end(), frame.ground) - grounds.begin()];
+      all->heights[t] = (frame.ground->up.transpose() * all->places[t]).array() - frame.ground->level_m;
+      all->lowest[t] = all->heights[t].minCoeff();
+      for (GroundContact& foot : frame.Get<GroundContactTerm>().feet) {
+        Vector3d place = foot.target_m;
+        const CameraPose* camera = frame.camera_from_scene;
+        if (camera != nullptr) place = MovedPoint(Inverse(*camera), place);
+        const double above = old.up.dot(place) - old.level_m;
+        place += (above - (frame.ground->up.dot(place) - frame.ground->level_m)) * frame.ground->up;
+        foot.target_m = camera != nullptr ? MovedPoint(*camera, place) : place;
+      }
+    }
   }
 }
 
@@ -156,7 +256,7 @@ void ClipContacts::StartRound(int round, const std::vector<int>& /*frames*/, Seq
   const std::vector<char> hovers = FindHovering(*problem, centre_of_mass_, all.lowest, num_threads_);
   std::vector<std::vector<char>> touches(problem->frames.size());
   for (size_t t = 0; t < problem->frames.size(); ++t) touches[t] = FindTouching(*problem, points_, all, hovers, t);
-  if (round > 0 && !level_is_given_) LevelGrounds(points_, touches, problem, &all);
+  if (!level_is_given_) MoveGrounds(points_, touches, problem, &all);
   for (size_t t = 0; t < problem->frames.size(); ++t) {
     FrameData& frame = problem->frames[t];
     auto& term = frame.Get<SurfaceContactTerm>();
@@ -171,8 +271,12 @@ void ClipContacts::StartRound(int round, const std::vector<int>& /*frames*/, Seq
     }
     for (size_t k = 0; k < points_.size(); ++k) {
       const bool near = all.heights[t][static_cast<Eigen::Index>(k)] <= kNearM;
-      if (near || touches[t][k] != 0)
-        term.contacts.push_back({points_[k].vertex, touches[t][k] != 0, points_[k].rest_m});
+      if (near || touches[t][k] != 0) {
+        const double variance = term.sigma_m * term.sigma_m;
+        const Vector3d place = all.places[t].col(static_cast<Eigen::Index>(k));
+        const double share = variance / (variance + frame.ground->HeightVariance(place));
+        term.contacts.push_back({points_[k].vertex, touches[t][k] != 0, points_[k].rest_m, share});
+      }
     }
   }
 }

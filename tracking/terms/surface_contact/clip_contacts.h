@@ -4,12 +4,16 @@
 /// Heights are those of the states when a round starts. A point touches the ground in a frame in which it is within
 /// kTouchingM of it (points that are not of the soles: 2 cm) and moves by less than kTouchingSpeed. A stretch of frames
 /// in which the whole body is higher is a flight if its centre of mass accelerates downwards by more than kMinFall in
-/// the middle, and then at most RiseInFlight() high. In other frames the person hovers, and the lowest points touch,
-/// unless they are more than kMaxHoverM above the ground: then somebody stands on something else. Points within kNearM
-/// of the ground stay above it.
+/// the middle, or if it is shorter than kShortFlight_s, and then at most RiseInFlight() high. In other frames the person
+/// hovers, and the lowest points touch, unless they are more than kMaxHoverM above the ground: then somebody stands on
+/// something else. Points within kNearM of the ground stay above it.
 ///
-/// Rounds after the first begin by moving the level of a shot's ground to the median of the touching points, since the
-/// first estimate is that of ankles, which stand at a height of their own. A ground that is given stays where it is.
+/// Each round begins by fitting the grounds of a shot, parallel planes, to what touches them:
+///   Σ w ρ((u · x − l)² / σ²) + ‖(u − u₀) across u₀‖² / σ_u²  → minimum over u and every level l
+/// x: what touches in a frame; σ² = kTouchSigmaM² + (u · ray · depth)², depth the σ of a stance's depth; w: seconds /
+/// kCorrelation_s, because a track's errors last; u₀, σ_u: the vertical as measured without the ground. A frame without
+/// touch bounds the ground, which is at most kTouchingM above its lowest point. The fit's covariance gives the variance
+/// of the ground's height at any place. A ground that is given stays where it is.
 #pragma once
 
 #include <memory>
@@ -25,6 +29,9 @@ struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
 inline constexpr double kTouchingM = 0.06, kTouchingSpeed = 0.3, kMaxHoverM = 0.3, kNearM = 0.12;
+inline constexpr double kShortFlight_s = 0.4;  ///< whose fall the track is too smooth to show
+inline constexpr double kTouchSigmaM = 0.03;   ///< of the height of what touches: a track's errors, raised heels
+inline constexpr double kCorrelation_s = 0.5;
 inline constexpr double kMinFall = 2.5;  ///< m/s²; a quarter of g, because the track and the parabola are smooth
 
 /// True if contacts with the ground are looked for.

@@ -28,7 +28,7 @@ void SurfaceContactTerm::Add(FrameAccumulator* sums) const {
     const bool free = !contact.touches && height >= 0;
     if (free && !sums->one_by_one()) continue;
     const double residual = free ? 0 : height;
-    const double scale = sums->AddGroup(1, residual * residual, kSurfaceContactKernel, weight);
+    const double scale = sums->AddGroup(1, residual * residual, kSurfaceContactKernel, weight * contact.share);
     if (!sums->derivatives()) continue;
     place(true);
     auto rows = sums->NextRows(3);

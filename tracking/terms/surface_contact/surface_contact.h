@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Nothing below the ground, and something on it: heights of surface points above the ground of the person.
-///   ½ w Σ_k ρ((h_k / σ)²)               a point that touches the ground
-/// + ½ w Σ_k ρ((min(0, h_k) / σ)²)       any other point near it
+///   ½ w Σ_k s_k ρ((h_k / σ)²)               a point that touches the ground
+/// + ½ w Σ_k s_k ρ((min(0, h_k) / σ)²)       any other point near it
 /// h_k = u · (x_k + o) − l − r_k, metres: u the vertical, l the level of the ground, o = FrameLayout::BodyPlace, r_k
 /// the height of a sole's point above the lowest of a foot that stands flat; ρ: Geman–McClure with
-/// c = kSurfaceContactKernel. Which points touch is found in clip_contacts.h and held during a solve. Runs in frames of
+/// c = kSurfaceContactKernel; s_k in (0, 1]: σ² over it plus the variance of the ground's
+/// height there, since a wrong vertical raises one end of a path or of somebody who lies, and lowers the other. Which points touch is found in clip_contacts.h and held during a solve. Runs in frames of
 /// a shot whose ground is known.
 #pragma once
 
@@ -24,6 +25,7 @@ class SurfaceContactTerm : public CopyableTerm<SurfaceContactTerm> {
     int vertex = 0;
     bool touches = false;
     double rest_m = 0;  ///< r
+    double share = 1;   ///< s
   };
   Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);  ///< u, camera axes, unit
   double level_m = 0;                              ///< l

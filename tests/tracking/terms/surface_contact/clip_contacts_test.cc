@@ -40,6 +40,7 @@ class Clip {
     problem_.cut_before.assign(frames, 0);
     const double sole = body_.data().v_template.col(1).minCoeff();
     ground_ = {Vector3d(0, -1, 0), -1.2};
+    ground_.measured_up_sigma_rad = 0.06;
     for (int t = 0; t < frames; ++t) {
       problem_.timestamps.push_back(t / kRate);
       FrameState& state = problem_.states[t];
@@ -75,6 +76,7 @@ class Clip {
   [[nodiscard]] const FrameData& Frame(int t) const { return problem_.frames[t]; }
   [[nodiscard]] const BodyModel& body() const { return body_; }
   SequenceProblem* problem() { return &problem_; }
+  FrameGround* ground() { return &ground_; }
 
  private:
   ClipTermInput Input() {
@@ -158,16 +160,57 @@ TEST(ClipContacts, SkatersDoNotTouch) {
 
 TEST(ClipContacts, ALevelThatIsWrongMovesToTheSoles) {
   Clip clip(15, [](double) { return -0.04; });
-  clip.Start();
   const double before = clip.Frame(3).ground->level_m;
-  clip.Start(1);
-  EXPECT_NEAR(clip.Frame(3).ground->level_m, before - 0.04, 1e-6);
+  clip.Start();
+  EXPECT_NEAR(clip.Frame(3).ground->level_m, before - 0.04, 1e-4);
   Clip given(15, [](double) { return -0.04; });
   KnownGround ground;
   ground.has_plane = true;
   given.GiveGround(&ground);
-  given.Start(1);
+  given.Start();
   EXPECT_EQ(given.Frame(3).ground->level_m, before) << "a ground that is given stays";
+}
+
+/// Somebody stands at seven places, 0.5 m apart, and the vertical is stated 4° wrong: what touches the ground tells it,
+/// unless it is surely known.
+TEST(ClipContacts, APathTellsTheVertical) {
+  const Vector3d truth(0, -1, 0), wrong = RotationFromAxisAngle(Vector3d(0, 0, 4 * M_PI / 180)) * truth;
+  const auto run = [&](double sigma_rad) {
+    Clip clip(70, [](double) { return 0.0; });
+    for (int t = 0; t < 70; ++t) clip.problem()->states[t].translation.x() = 0.5 * (t / 10) - 1.5;
+    clip.ground()->up = clip.ground()->measured_up = wrong;
+    clip.ground()->measured_up_sigma_rad = sigma_rad;
+    clip.ground()->level_m = wrong.dot(Vector3d(0, 1.2, 4));
+    for (int round = 0; round < 3; ++round) clip.Start(round);
+    return *clip.ground();
+  };
+  const auto off_deg = [&](const FrameGround& ground) { return 180 / M_PI * std::acos(ground.up.dot(truth)); };
+  const FrameGround found = run(0.06), known = run(0.001);
+  EXPECT_LT(off_deg(found), 1);
+  EXPECT_LT(found.up_sigma_rad, 0.06);
+  EXPECT_NEAR(found.up.dot(Vector3d(0, 1.2, 4)), found.level_m, 0.01);
+  EXPECT_NEAR(off_deg(known), 4, 0.1);
+  // The height is sure where somebody stood, and less so far from there.
+  EXPECT_LT(found.HeightVariance(Vector3d(0, 1.2, 4)), 0.02 * 0.02);
+  EXPECT_GT(found.HeightVariance(Vector3d(0, 1.2, 9)), 0.1 * 0.1);
+  EXPECT_NEAR(found.HeightVariance(Vector3d(1.5, 1.2, 4)), 0.02 * 0.02, 0.02 * 0.02);
+}
+
+/// Somebody who runs touches nothing for long, but cannot be 30 cm below the ground.
+TEST(ClipContacts, ARunBoundsTheGround) {
+  const Vector3d truth(0, -1, 0), wrong = RotationFromAxisAngle(Vector3d(0, 0, -5 * M_PI / 180)) * truth;
+  Clip clip(60, [](double) { return 0.0; });
+  for (int t = 0; t < 60; ++t) clip.problem()->states[t].translation.x() = t < 20 ? 0 : 3.0 * (t - 20) / kRate;
+  clip.ground()->up = clip.ground()->measured_up = wrong;
+  clip.ground()->level_m = wrong.dot(Vector3d(0, 1.2, 4));
+  const auto below = [&](int t) {
+    const Vector3d at(clip.problem()->states[t].translation.x(), 1.2, 4);
+    return clip.ground()->level_m - clip.ground()->up.dot(at);
+  };
+  const double before = std::max(below(0), below(59));
+  EXPECT_GT(before, 0.5);
+  for (int round = 0; round < 3; ++round) clip.Start(round);
+  EXPECT_LT(std::max(below(0), below(59)), 0.25 * before);
 }
 
 /// A body that leans backwards by 20° as a whole has its centre of mass some 25 cm behind its heels; one that stands
