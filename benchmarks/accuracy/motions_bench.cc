@@ -6,13 +6,13 @@
 ///                          [--lifter built-in|none|FILE] [--worst 0] [--json F]
 ///
 /// --ground: with (all that the tracker does), without, without-contacts (neither surface contacts nor balance),
-/// without-balance. Every test clip (its first frames at 30 a second) in front of a synthetic camera of known focal length, with a
-/// detector's noise (data_tools/synthesis/clips/detection_noise.h), its toes and heels left out. pa: PA-MPJPE, mpjpe:
-/// mid-hip aligned, both of COCO-17 in mm. pa_over_120: frames in which pa is above 120 mm, of all the class' frames.
-/// --worst N names the N clips whose worst frame is the worst. slide: mean speed of the ankles, m/s, in frames in which
-/// the true ones stand (below 0.1 m/s). ground: clips in which one was found. The other columns are of the room that the
-/// track states (data_tools/evaluation/room_errors.h, room_physics.h), tilt of every clip, what follows of clips with a
-/// ground. Means over clips; the body's stature is the true one.
+/// without-balance. Every test clip (its first frames at 30 a second) in front of a synthetic camera of known focal
+/// length, with a detector's noise (data_tools/synthesis/clips/detection_noise.h), its toes and heels left out. pa:
+/// PA-MPJPE, mpjpe: mid-hip aligned, both of COCO-17 in mm. pa_over_120: frames in which pa is above 120 mm, of all the
+/// class' frames. --worst N names the N clips whose worst frame is the worst. slide: mean speed of the ankles, m/s, in
+/// frames in which the true ones stand (below 0.1 m/s). ground: clips in which one was found. The other columns are of
+/// the room that the track states (data_tools/evaluation/room_errors.h, room_physics.h), the first four of every clip
+/// with a vertical, the rest of clips with a ground. Means over clips; the body's stature is the true one.
 #include <algorithm>
 #include <cstdio>
 #include <map>

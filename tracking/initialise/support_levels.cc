@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMaxFrame_s = 0.1;     ///< a frame stands for no longer time
-constexpr double kCorrelation_s = 0.5;  ///< of a track's errors
+constexpr double kErrorsLast_s = 0.5;  ///< of a track's errors
 constexpr double kSystematicM = 0.015;  ///< σ of what all frames are off together
 constexpr double kMaxTiltSigmas = 3;    ///< a height that so many of the vertical's σ explain is no level
 constexpr size_t kMaxLevels = 12;       ///< more are not levels but a slope or errors
@@ -61,7 +61,7 @@ SupportLevel Heaviest(const std::vector<RestingFrame>& frames, const std::vector
     if (sum > best.seconds) {
       const double mean = moment / sum, variance = std::max(0.0, square / sum - mean * mean);
       best = {left.front().first + mean, sum,
-              std::sqrt(variance / std::max(1.0, sum / kCorrelation_s) + kSystematicM * kSystematicM)};
+              std::sqrt(variance / std::max(1.0, sum / kErrorsLast_s) + kSystematicM * kSystematicM)};
     }
     const double from_first = left[first].first - left.front().first;
     sum -= left[first].second;

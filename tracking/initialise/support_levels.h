@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Finds the heights at which a person is supported, by any part of the body: a floor on which somebody sits, lies or
-/// runs, and further levels as a box, a beam or stairs.
+/// runs, and further levels such as a box, a wall or a stage.
 ///
 /// The evidence is the lowest point of the body in each frame, with the weight
 ///   w = Δt / (1 + (v / kRestSpeed)²)
 /// Δt: time that the frame stands for, v: speed of the point. In flight the lowest point moves, so its frames hardly
 /// count. The main level is the weighted mean of the heights in the window of 2 kLevelHalfWidthM that holds the largest
-/// weight. It is found when it has kMinRest_s of rest and kMinRestShare of all rest within kOnLevelM: who climbs rests everywhere.
+/// weight. It is found when it has kMinRest_s of rest and kMinRestShare of all rest within kOnLevelM; a climber rests
+/// at all heights.
 ///
 /// Other levels are the same of what is left farther than kApartM from all levels so far. Each needs kMinLevel_s of
 /// rest, and a height that a wrong vertical does not explain: |Δh| > 3 σ_up d, d the horizontal distance of the mean

@@ -2,7 +2,7 @@
 /// Finds, for each frame of a clip, what its centre of mass should stand above (balance.h).
 ///
 /// The centre of mass and its acceleration a are those of MotionAround() the frame. Supports are the points of
-/// surface_contact/contact_points.h within kTouchingM of the ground; without any, and where a cut leaves too few frames
+/// problem/contact_points.h within kTouchingM of the ground; without any, and where a cut leaves too few frames
 /// for the motion, a frame has no term. w falls as 1/(1 + (|a|/a₀)⁴) with
 /// a₀ = kSlowAcceleration: on recorded dances (SMPL motion of AIST++, hull widened by 4 cm) the zero-moment point of
 /// frames slower than that lies 0, 25 and 59 mm outside in 75, 90 and 95 %, of all frames 77, 220 and 352 mm.
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tracking/problem/clip_term.h"
-#include "tracking/terms/surface_contact/contact_points.h"
+#include "tracking/problem/contact_points.h"
 
 namespace bodyloom {
 

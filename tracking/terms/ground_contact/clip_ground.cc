@@ -172,7 +172,7 @@ std::vector<LowestPoint> ClipGround::LowestPoints(const SequenceProblem& problem
     const size_t before = i > 0 ? i - 1 : i, after = i + 1 < index.size() ? i + 1 : i;
     const double seconds = problem.timestamps[index[after]] - problem.timestamps[index[before]];
     const double moved = (at[after].col(k) - at[before].col(k)).norm();
-    // Who hangs from something has both hands overhead, and legs that rest on nothing.
+    // Somebody who hangs has both hands overhead, and legs that rest on nothing.
     const double above = highest(i, head);
     const bool may_hang = highest(i, wrists[0]) > above && highest(i, wrists[1]) > above;
     const int leg = LegOf(body.data().joint_names[points_[static_cast<size_t>(k)].joint]);

@@ -18,7 +18,7 @@
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
 #include "tracking/room/picture_vertical.h"
-#include "tracking/terms/surface_contact/contact_points.h"
+#include "tracking/problem/contact_points.h"
 
 namespace bodyloom {
 

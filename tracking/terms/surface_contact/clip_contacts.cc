@@ -107,7 +107,7 @@ std::vector<char> FindTouching(const SequenceProblem& problem, const std::vector
   return touches;
 }
 
-/// What touches the ground in one frame: the soles, or the lowest point if only others do.
+/// The place of the ground in one frame, by the soles that touch it, or by the lowest point that does.
 struct Touch {
   bool is_bound = false;                ///< nothing touches: the ground is at most as high
   Vector3d place_m = Vector3d::Zero();  ///< of the ground under it

@@ -4,7 +4,7 @@
 /// Heights are those of the states when a round starts. A point touches the ground in a frame in which it is within
 /// kTouchingM of it (points that are not of the soles: 2 cm) and moves by less than kTouchingSpeed. A stretch of frames
 /// in which the whole body is higher is a flight if its centre of mass accelerates downwards by more than kMinFall in
-/// the middle, or if it is shorter than kShortFlight_s, and then at most RiseInFlight() high. In other frames the person
+/// the middle, or if it is shorter than kShortFlight_s, and then at most RiseInFlight() high. In other frames somebody
 /// hovers, and the lowest points touch, unless they are more than kMaxHoverM above the ground: then somebody stands on
 /// something else. Points within kNearM of the ground stay above it.
 ///
@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "tracking/problem/clip_term.h"
-#include "tracking/terms/surface_contact/contact_points.h"
+#include "tracking/problem/contact_points.h"
 
 namespace bodyloom {
 

@@ -4,9 +4,10 @@
 /// + ½ w Σ_k s_k ρ((min(0, h_k) / σ)²)       any other point near it
 /// h_k = u · (x_k + o) − l − r_k, metres: u the vertical, l the level of the ground, o = FrameLayout::BodyPlace, r_k
 /// the height of a sole's point above the lowest of a foot that stands flat; ρ: Geman–McClure with
-/// c = kSurfaceContactKernel; s_k in (0, 1]: σ² over it plus the variance of the ground's
-/// height there, since a wrong vertical raises one end of a path or of somebody who lies, and lowers the other. Which points touch is found in clip_contacts.h and held during a solve. Runs in frames of
-/// a shot whose ground is known.
+/// c = kSurfaceContactKernel; s_k = σ² / (σ² + σ_k²), σ_k² the variance of the ground's height at the point
+/// (FrameGround::HeightVariance), since a wrong vertical raises one end of a path or of somebody who lies, and lowers
+/// the other. Which points touch is found in clip_contacts.h and held during a solve. Runs in frames of a shot whose
+/// ground is known.
 #pragma once
 
 #include <Eigen/Core>

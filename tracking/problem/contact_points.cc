@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/terms/surface_contact/contact_points.h"
+#include "tracking/problem/contact_points.h"
 
 #include <algorithm>
 #include <string>
