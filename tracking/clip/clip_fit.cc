@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "geometry/base/check.h"
@@ -287,18 +288,32 @@ void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
 }
 
 void ClipFit::FitRounds(SequenceProblem* coarse) {
+  // Terms that name the same stage share its solves.
+  std::vector<std::vector<ClipTerm*>> shared;
+  for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
+    const ClipTerm::Rounds rounds = (*term)->rounds();
+    if (rounds.count == 0) continue;
+    const auto same = std::find_if(shared.begin(), shared.end(), [&](const std::vector<ClipTerm*>& terms) {
+      return std::string_view(terms.front()->rounds().stage) == rounds.stage;
+    });
+    if (same != shared.end()) {
+      same->push_back(term->get());
+    } else {
+      shared.push_back({term->get()});
+    }
+  }
   int total = 0;
-  for (const auto& term : terms_) total += term->rounds().count;
+  for (const auto& terms : shared) total += terms.front()->rounds().count;
   const double share = total > 0 ? (stages_.round.to - stages_.round.from) / total : 0;  // of the whole progress
   Stage stage = stages_.round;
   // Labels align the body with its outline before dense keypoints are matched to the visible surface.
-  for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
-    const ClipTerm::Rounds rounds = (*term)->rounds();
+  for (const auto& terms : shared) {
+    const ClipTerm::Rounds rounds = terms.front()->rounds();
     stage.name = rounds.stage;
     stage.max_iterations = rounds.max_iterations;
     for (int round = 0; runner_->ok() && round < rounds.count; ++round) {
       stage.to = stage.from + share;
-      (*term)->StartRound(round, coarse_frames_, coarse);
+      for (ClipTerm* term : terms) term->StartRound(round, coarse_frames_, coarse);
       runner_->Run(stage, coarse);
       stage.from = stage.to;
     }

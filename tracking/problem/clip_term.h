@@ -57,7 +57,7 @@ class ClipTerm {
   struct Rounds {
     int count = 0;
     int max_iterations = 0;  ///< of a solve
-    const char* stage = "";  ///< its name in summary and progress
+    const char* stage = "";  ///< its name in summary and progress; terms that name the same one share its solves
   };
   [[nodiscard]] virtual Rounds rounds() const { return {}; }
   /// Updates the term for a round. `problem` holds `frames` of the clip; `round` counts from 0, and is the last one for

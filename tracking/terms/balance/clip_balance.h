@@ -30,7 +30,7 @@ class ClipBalance : public ClipTerm {
   explicit ClipBalance(const ClipTermInput& clip);
 
   void Observe(SequenceProblem* problem) override;
-  [[nodiscard]] Rounds rounds() const override { return {2, 8, "fit balance"}; }
+  [[nodiscard]] Rounds rounds() const override { return {2, 8, "fit contacts"}; }
   void StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) override;
 
  private:

@@ -305,6 +305,11 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
   const GroundPlane& ground = longest->ground;
   result.has_plane = ground.found;
   result.why = longest->why;
+  for (size_t k = 1; k < longest->levels.size(); ++k) {
+    const double higher = longest->floors[k]->level_m - longest->floors[0]->level_m;
+    result.why += Concatenate("; ", std::round(10 * longest->levels[k].seconds) / 10, " s ",
+                              std::round(100 * std::abs(higher)) / 100, " m ", higher > 0 ? "above" : "below", " it");
+  }
   if (!ground.found) return;
   result.camera_height_m = -longest->floors.front()->level_m;
   const FrameGround& floor = *longest->floors.front();
