@@ -45,20 +45,24 @@ std::vector<ContactPoint> FindContactPoints(const BodyModel& model) {
     }
     if (static_cast<int>(own.size()) < kMinVertices) continue;
     std::vector<Vector3d> directions;
-    for (int axis = 0; axis < 3; ++axis) {
-      directions.push_back(Vector3d::Unit(axis));
-      directions.push_back(-Vector3d::Unit(axis));
-    }
-    if (HasSole(model.data().joint_names[j])) {
-      for (const double x : {-1.0, 1.0}) {
-        for (const double z : {-1.0, 1.0}) directions.emplace_back(0.5 * x, -1, 0.5 * z);
+    const std::string& joint = model.data().joint_names[j];
+    if (HasSole(joint)) {
+      // Heels are led by ankles, balls and toes by feet.
+      const double z = joint.ends_with("foot") ? 1 : -1;
+      for (const double x : {-1.0, 1.0}) directions.emplace_back(0.5 * x, -1, 0.5 * z);
+      directions.emplace_back(0, 0, z);
+      directions.push_back(Vector3d::UnitY());
+    } else {
+      for (int axis = 0; axis < 3; ++axis) {
+        directions.push_back(Vector3d::Unit(axis));
+        directions.push_back(-Vector3d::Unit(axis));
       }
     }
     for (const Vector3d& direction : directions) {
       const int farthest = *std::max_element(own.begin(), own.end(), [&](int a, int b) {
         return rest.row(a).dot(direction.transpose()) < rest.row(b).dot(direction.transpose());
       });
-      const bool sole = HasSole(model.data().joint_names[j]) && rest(farthest, 1) <= lowest + kSoleM;
+      const bool sole = HasSole(joint) && rest(farthest, 1) <= lowest + kSoleM;
       points.push_back({farthest, j, sole, sole ? rest(farthest, 1) - lowest : 0});
     }
   }
