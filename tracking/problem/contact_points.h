@@ -2,8 +2,9 @@
 /// Points of a body's surface that can touch the ground, and their heights above it.
 ///
 /// Of the vertices that follow a joint more than any other, those are taken that lie farthest along each of the body's
-/// six axes in the rest pose: knees, seat, back, elbows, hands, head. Of ankles and feet, which are rigid, those farthest
-/// down on both sides, to the end and up: heels, balls, toes, instep. Joints that lead fewer than four vertices have none.
+/// six axes in the rest pose: knees, seat, back, elbows, hands, head. Of ankles and feet, which are rigid, those are
+/// taken that lie farthest down on both sides, to the end and up: heels, balls, toes, instep. Joints that lead fewer
+/// than four vertices have none.
 #pragma once
 
 #include <vector>
