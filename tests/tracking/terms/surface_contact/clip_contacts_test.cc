@@ -110,7 +110,7 @@ TEST(ContactPoints, AreSolesHandsSeatAndHead) {
   for (const ContactPoint& point : points) {
     soles += point.sole ? 1 : 0;
     EXPECT_TRUE(!point.sole || rest(point.vertex, 1) < rest.col(1).minCoeff() + 0.0151);
-    lowest |= rest(point.vertex, 1) < rest.col(1).minCoeff() + 0.006;  // corners of the sole, which its lowest vertex is not
+    lowest |= rest(point.vertex, 1) < rest.col(1).minCoeff() + 0.006;  // a corner of the sole
     highest |= rest(point.vertex, 1) == rest.col(1).maxCoeff();
     left |= rest(point.vertex, 0) == rest.col(0).maxCoeff();
     back |= rest(point.vertex, 2) == rest.col(2).minCoeff();
