@@ -107,41 +107,39 @@ std::vector<char> FindTouching(const SequenceProblem& problem, const std::vector
   return touches;
 }
 
-/// The place of the ground in one frame, by the soles that touch it, or by the lowest point that does.
+/// A place of the ground in one frame, by the sole of a foot, or by the lowest point where only others touch.
 struct Touch {
   bool is_bound = false;                ///< nothing touches: the ground is at most as high
+  int side = 0;                         ///< 1: left foot, -1: right
   Vector3d place_m = Vector3d::Zero();  ///< of the ground under it
   double seconds = 0;
 };
 
-Touch FindTouch(const SequenceProblem& problem, const std::vector<ContactPoint>& points,
-                const std::vector<char>& touches, const Heights& all, size_t t) {
+void FindTouches(const SequenceProblem& problem, const std::vector<ContactPoint>& points,
+                 const std::vector<char>& touching, const Heights& all, size_t t, std::vector<Touch>* touches) {
   const Vector3d up = problem.frames[t].ground->up;
-  Touch touch;
-  Vector3d soles = Vector3d::Zero(), lowest = Vector3d::Zero();
-  int num_soles = 0;
-  double minimum = std::numeric_limits<double>::infinity();
-  for (size_t k = 0; k < touches.size(); ++k) {
-    if (touches[k] == 0) continue;
-    const auto c = static_cast<Eigen::Index>(k);
-    if (points[k].sole) {
-      soles += all.places[t].col(c) - points[k].rest_m * up;
-      ++num_soles;
-    } else if (all.heights[t][c] < minimum) {
-      minimum = all.heights[t][c];
-      lowest = all.places[t].col(c);
-    }
-  }
-  touch.is_bound = num_soles == 0 && !std::isfinite(minimum);
-  if (touch.is_bound) {
-    Eigen::Index c = 0;
-    all.heights[t].minCoeff(&c);
-    lowest = all.places[t].col(c);
-  }
-  touch.place_m = num_soles > 0 ? Vector3d(soles / num_soles) : lowest;
   const bool has_before = t > 0 && problem.cut_before[t] == 0;
-  touch.seconds = has_before ? problem.timestamps[t] - problem.timestamps[t - 1] : 0;
-  return touch;
+  const double seconds = has_before ? problem.timestamps[t] - problem.timestamps[t - 1] : 0;
+  bool soles = false, others = false;
+  for (const int side : {1, -1}) {
+    Vector3d sum = Vector3d::Zero();
+    int count = 0;
+    for (size_t k = 0; k < touching.size(); ++k) {
+      if (touching[k] == 0 || !points[k].sole) continue;
+      const bool is_left = problem.layout.model->data().joint_names[points[k].joint].starts_with("l_");
+      if (is_left != (side > 0)) continue;
+      sum += all.places[t].col(static_cast<Eigen::Index>(k)) - points[k].rest_m * up;
+      ++count;
+    }
+    if (count == 0) continue;
+    touches->push_back({false, side, sum / count, seconds});
+    soles = true;
+  }
+  if (soles) return;
+  Eigen::Index lowest = 0;
+  all.heights[t].minCoeff(&lowest);
+  for (const char touches_here : touching) others = others || touches_here != 0;
+  touches->push_back({!others, 0, all.places[t].col(lowest), seconds});
 }
 
 /// Fits the grounds of one shot by Gauss–Newton with weights of Geman–McClure; of bounds, Huber's.
@@ -151,16 +149,17 @@ void FitGrounds(const std::vector<FrameGround*>& grounds, const std::vector<std:
   const double sigma_u = std::max(grounds.front()->measured_up_sigma_rad, kMinUpSigma),
                depth_m = GroundPlaneOptions().depth_m;
   const Vector3d e1 = measured.unitOrthogonal(), e2 = measured.cross(e1);
-  VectorXd x(2 + n);
+  VectorXd x = VectorXd::Zero(3 + n);
   const Vector3d up0 = grounds.front()->up / grounds.front()->up.dot(measured);
   x[0] = e1.dot(up0);
   x[1] = e2.dot(up0);
   for (Eigen::Index k = 0; k < n; ++k) x[2 + k] = grounds[k]->level_m / grounds[k]->up.dot(measured);
   Eigen::MatrixXd H;
   for (int pass = 0; pass < 10; ++pass) {
-    H = Eigen::MatrixXd::Zero(2 + n, 2 + n);
-    VectorXd rhs = VectorXd::Zero(2 + n);
+    H = Eigen::MatrixXd::Zero(3 + n, 3 + n);
+    VectorXd rhs = VectorXd::Zero(3 + n);
     H(0, 0) = H(1, 1) = 1 / (sigma_u * sigma_u);
+    H(2 + n, 2 + n) = 1 / (kFeetApartM * kFeetApartM);
     for (Eigen::Index k = 0; k < n; ++k) {
       // A level that nothing touches stays where it is.
       H(2 + k, 2 + k) = 1e-6;
@@ -168,10 +167,11 @@ void FitGrounds(const std::vector<FrameGround*>& grounds, const std::vector<std:
       for (const Touch& touch : touches[k]) {
         const double along = measured.dot(touch.place_m.normalized()) * depth_m;
         const double information = 1 / (kTouchSigmaM * kTouchSigmaM + along * along);
-        VectorXd row = VectorXd::Zero(2 + n);
+        VectorXd row = VectorXd::Zero(3 + n);
         row[0] = e1.dot(touch.place_m);
         row[1] = e2.dot(touch.place_m);
         row[2 + k] = -1;
+        row[2 + n] = -touch.side;
         const double below = touch.is_bound ? kTouchingM : 0;
         const double residual = measured.dot(touch.place_m) + below + row.dot(x);
         if (touch.is_bound && residual > 0) continue;
@@ -214,7 +214,7 @@ void MoveGrounds(const std::vector<ContactPoint>& points, const std::vector<std:
         grounds.push_back(ground);
         of_ground.emplace_back();
       }
-      of_ground[at].push_back(FindTouch(*problem, points, touches[end], *all, end));
+      FindTouches(*problem, points, touches[end], *all, end, &of_ground[at]);
     }
     if (grounds.empty()) continue;
     std::vector<FrameGround> before;
