@@ -15,8 +15,6 @@ import pickle
 
 import numpy as np
 
-import bodyloom
-
 LIMBS = ((5, 7), (7, 9), (6, 8), (8, 10), (11, 13), (13, 15), (12, 14), (14, 16))
 NAMES = ("l upper arm", "l forearm", "r upper arm", "r forearm", "l thigh", "l shin", "r thigh", "r shin", "hips", "shoulders", "trunk", "nose")
 
@@ -53,6 +51,7 @@ def pa_mpjpe_mm(joints, truth):
 
 
 def main():
+    import bodyloom
     parser = argparse.ArgumentParser()
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--views", nargs="+", default=["c01", "c03", "c05", "c07", "c08"])

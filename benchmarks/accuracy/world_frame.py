@@ -40,8 +40,12 @@ def camera_of(path, view):
     cameras = cameras if isinstance(cameras, list) else cameras["cameras"]
     for camera in cameras:
         if camera["name"] == view:
-            return rotation(camera.get("rotation", camera.get("rvec")))
+            return camera
     sys.exit(f"{path}: no camera {view}, expected one of {[c['name'] for c in cameras]}")
+
+
+def rotation_of(camera):
+    return rotation(camera.get("rotation", camera.get("rvec")))
 
 
 def standing(ankles, times, up_axis):
@@ -49,6 +53,25 @@ def standing(ankles, times, up_axis):
     speed = np.linalg.norm(np.gradient(ankles, times, axis=0), axis=2)
     height = ankles @ up_axis
     return (speed < 0.2) & (height < np.nanpercentile(height, 5) + 0.05)
+
+
+def true_joints(path, frames):
+    """T x 17 x 3 metres of a KEYPOINTS3D."""
+    with open(path, "rb") as file:
+        return np.asarray(pickle.load(file)["keypoints3d_optim"])[:frames] / 100
+
+
+def vertical_off_deg(track, up_true):
+    return np.degrees(np.arccos(np.clip(track["world_from_camera"][1, :3] @ up_true, -1, 1)))
+
+
+def standing_ankles(track, truth, up_axis):
+    """The ankles in the track's world, T x 2 x 3, and which of them stand: by the true joints, by their own motion without."""
+    M = track["world_from_camera"]
+    ankles = track["joints"][:, [7, 8]] @ M[:3, :3].T + M[:3, 3]
+    if truth is None:
+        return ankles, standing(ankles, track["timestamps"], np.array([0, 1, 0]))
+    return ankles, standing(truth[:, [15, 16]], track["timestamps"], up_axis)
 
 
 def lowest_points():
@@ -65,18 +88,12 @@ def main():
         sys.exit(__doc__)
     track = np.load(sys.argv[1])
     axis = np.eye(3)["xyz".index(sys.argv[4][-1])] * (-1 if sys.argv[4][0] == "-" else 1)
-    up_true = camera_of(sys.argv[2], sys.argv[3]) @ axis
-    M = track["world_from_camera"]
-    angle = np.degrees(np.arccos(np.clip(M[1, :3] @ up_true, -1, 1)))
+    up_true = rotation_of(camera_of(sys.argv[2], sys.argv[3])) @ axis
+    angle = vertical_off_deg(track, up_true)
     sigma = track["world_sigma"]
     level = np.degrees(np.arccos(np.clip(-up_true[1], -1, 1)))
-    joints = track["joints"] @ M[:3, :3].T + M[:3, 3]
-    ankles, times = joints[:, [7, 8]], track["timestamps"]
-    if len(sys.argv) == 6:
-        truth = np.asarray(pickle.load(open(sys.argv[5], "rb"))["keypoints3d_optim"])[: len(times)] / 100
-        stands = standing(truth[:, [15, 16]], times, axis)
-    else:
-        stands = standing(ankles, times, np.array([0, 1, 0]))
+    times = track["timestamps"]
+    ankles, stands = standing_ankles(track, true_joints(sys.argv[5], len(times)) if len(sys.argv) == 6 else None, axis)
     off = 100 * (ankles[stands][:, 1] - ANKLE_M)
     velocity = np.linalg.norm(np.gradient(ankles, times, axis=0)[..., [0, 2]], axis=2)[stands]
     print(f"{sys.argv[1]}: {track['world_source']}; vertical {angle:.2f} deg off (said {sigma[0]:.2f}; a level camera "
