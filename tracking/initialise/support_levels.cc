@@ -13,11 +13,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMaxFrame_s = 0.1;     ///< a frame stands for no longer time
-constexpr double kErrorsLast_s = 0.5;  ///< of a track's errors
 constexpr double kSystematicM = 0.015;  ///< σ of what all frames are off together
-constexpr double kMaxTiltSigmas = 3;    ///< a height that so many of the vertical's σ explain is no level
-constexpr size_t kMaxLevels = 12;       ///< more are not levels but a slope or errors
-constexpr double kRestWeight = 0.5;     ///< w / Δt of a frame at rest
+/// Of the scatter of heights about their level, apart from kSystematicM, which no time averages. The whole error of
+/// what touches the ground lasts longer: kTouchErrorLasts_s (terms/surface_contact/clip_contacts.h).
+constexpr double kScatterLasts_s = 0.5;
+constexpr double kMaxTiltSigmas = 3;  ///< a height that so many of the vertical's σ explain is no level
+constexpr size_t kMaxLevels = 12;     ///< more are not levels but a slope or errors
+constexpr double kRestWeight = 0.5;   ///< w / Δt of a frame at rest
 
 struct RestingFrame {
   double height_m = 0, weight = 0;
@@ -61,7 +63,7 @@ SupportLevel Heaviest(const std::vector<RestingFrame>& frames, const std::vector
     if (sum > best.seconds) {
       const double mean = moment / sum, variance = std::max(0.0, square / sum - mean * mean);
       best = {left.front().first + mean, sum,
-              std::sqrt(variance / std::max(1.0, sum / kErrorsLast_s) + kSystematicM * kSystematicM)};
+              std::sqrt(variance / std::max(1.0, sum / kScatterLasts_s) + kSystematicM * kSystematicM)};
     }
     const double from_first = left[first].first - left.front().first;
     sum -= left[first].second;
@@ -84,7 +86,8 @@ Vector3d PlaceOn(const SupportLevel& level, std::span<const LowestPoint> points,
   return weight > 0 ? Vector3d(sum / weight) : sum;
 }
 
-double RestOn(const SupportLevel& level, const std::vector<RestingFrame>& frames) {
+/// Seconds of rest on a level.
+double SecondsOn(const SupportLevel& level, const std::vector<RestingFrame>& frames) {
   double seconds = 0;
   for (const RestingFrame& frame : frames) {
     if (std::abs(frame.height_m - level.level_m) <= kOnLevelM) seconds += frame.weight;
@@ -126,10 +129,10 @@ SupportLevels FindSupportLevels(std::span<const LowestPoint> points, const Vecto
   SupportLevel main;
   if (main_level_m) {
     main = {*main_level_m, 0, std::numeric_limits<double>::quiet_NaN()};
-    main.seconds = RestOn(main, frames);
+    main.seconds = SecondsOn(main, frames);
   } else {
     main = Heaviest(frames, {}, 0);
-    const double on_it_s = main.seconds > 0 ? RestOn(main, frames) : 0;
+    const double on_it_s = main.seconds > 0 ? SecondsOn(main, frames) : 0;
     if (!(on_it_s >= kMinRest_s)) {
       result.why = "nothing is seen to rest for long enough";
       return result;
@@ -150,7 +153,7 @@ SupportLevels FindSupportLevels(std::span<const LowestPoint> points, const Vecto
     apart -= up.dot(apart) * up;
     // A slope of the whole clip: what lies still farther is one as well.
     if (std::abs(other.level_m - main.level_m) <= kMaxTiltSigmas * up_sigma_rad * apart.norm()) break;
-    other.seconds = RestOn(other, frames);
+    other.seconds = SecondsOn(other, frames);
     result.levels.push_back(other);
   }
   result.of_frame = AssignFrames(frames, result.levels);

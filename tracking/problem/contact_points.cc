@@ -27,6 +27,14 @@ std::vector<int> LeadingJoints(const BodyModel& model) {
   return leading;
 }
 
+int LegOf(const std::string& joint) {
+  for (const char* part : {"hip", "knee", "ankle", "foot"}) {
+    if (joint == std::string("l_") + part) return 0;
+    if (joint == std::string("r_") + part) return 1;
+  }
+  return -1;
+}
+
 bool HasSole(const std::string& joint) {
   return joint == "l_ankle" || joint == "r_ankle" || joint == "l_foot" || joint == "r_foot";
 }
@@ -46,6 +54,7 @@ std::vector<ContactPoint> FindContactPoints(const BodyModel& model) {
     if (static_cast<int>(own.size()) < kMinVertices) continue;
     std::vector<Vector3d> directions;
     const std::string& joint = model.data().joint_names[j];
+    const int leg = LegOf(joint);
     if (HasSole(joint)) {
       // Heels are led by ankles, balls and toes by feet.
       const double z = joint.ends_with("foot") ? 1 : -1;
@@ -63,7 +72,7 @@ std::vector<ContactPoint> FindContactPoints(const BodyModel& model) {
         return rest.row(a).dot(direction.transpose()) < rest.row(b).dot(direction.transpose());
       });
       const bool sole = HasSole(joint) && rest(farthest, 1) <= lowest + kSoleM;
-      points.push_back({farthest, j, sole, sole ? rest(farthest, 1) - lowest : 0});
+      points.push_back({farthest, j, leg, sole, sole ? rest(farthest, 1) - lowest : 0});
     }
   }
   const auto before = [](const ContactPoint& a, const ContactPoint& b) { return a.vertex < b.vertex; };

@@ -18,6 +18,7 @@ namespace bodyloom {
 struct ContactPoint {
   int vertex = 0;
   int joint = 0;      ///< that it follows
+  int leg = -1;       ///< of hip, knee, ankle or foot: 0 left, 1 right; -1: of none
   bool sole = false;  ///< of an ankle or foot, and within 1.5 cm of the lowest vertex of the rest pose
   double rest_m = 0;  ///< of a sole: height above that vertex in the rest pose, in which feet stand flat
 };

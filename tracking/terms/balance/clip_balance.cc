@@ -27,7 +27,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kTiltSigmas = 2;    ///< of the vertical, by which a point may be higher the farther it is
 constexpr double kMinWeight = 0.02;  ///< frames with less have no term
 
 /// The point of a hull nearest to a point outside of it: share · corner `a` + (1 − share) · corner `b`.

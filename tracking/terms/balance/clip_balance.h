@@ -2,10 +2,12 @@
 /// Finds, for each frame of a clip, what its centre of mass should stand above (balance.h).
 ///
 /// The centre of mass and its acceleration a are those of MotionAround() the frame. Supports are the points of
-/// problem/contact_points.h within kTouchingM of the ground; without any, and where a cut leaves too few frames
-/// for the motion, a frame has no term. w falls as 1/(1 + (|a|/a₀)⁴) with
-/// a₀ = kSlowAcceleration: on recorded dances (SMPL motion of AIST++, hull widened by 4 cm) the zero-moment point of
-/// frames slower than that lies 0, 25 and 59 mm outside in 75, 90 and 95 %, of all frames 77, 220 and 352 mm.
+/// problem/contact_points.h that are at most kTouchingM + kTiltSigmas σ d above the ground; σ: of the vertical, as
+/// measured without what touches the ground, per direction; d: horizontal distance from the lowest point, because a
+/// wrong vertical raises what is far from it. Without supports, and where a cut leaves too few frames for the motion, a
+/// frame has no term. w falls as 1/(1 + (|a|/a₀)⁴) with a₀ = kSlowAcceleration: on recorded dances (SMPL motion of
+/// AIST++, hull widened by 4 cm) the zero-moment point of frames slower than that lies 0, 25 and 59 mm outside in 75,
+/// 90 and 95 %, of all frames 77, 220 and 352 mm.
 #pragma once
 
 #include <memory>
@@ -21,6 +23,7 @@ struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
 inline constexpr double kSlowAcceleration = 1.5;
+inline constexpr double kTiltSigmas = 2;
 
 std::vector<PlanEntry> PlanBalance(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::unique_ptr<ClipTerm> MakeClipBalance(const ClipTermInput& clip);

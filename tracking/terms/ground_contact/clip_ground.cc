@@ -15,6 +15,7 @@
 #include "tracking/initialise/lifted_start.h"
 #include "tracking/lifter/lifter_input.h"
 #include "tracking/problem/body_points.h"
+#include "tracking/problem/contact_points.h"
 #include "tracking/terms/ground_contact/ground_contact.h"
 #include "tracking/terms/upright.h"
 
@@ -34,22 +35,50 @@ Vector3d InCamera(const FrameData& frame, const Vector3d& direction) {
 }
 
 /// The ground on which the body rests with any part, and the stances on it.
-GroundPlane RestOn(const SupportLevel& level, const std::vector<std::array<FootPlace, 2>>& feet,
+GroundPlane RestOn(const SupportLevels& supports, const std::vector<std::array<FootPlace, 2>>& feet,
                    const std::vector<double>& timestamps, const JoinedVertical& vertical) {
+  const SupportLevel& level = supports.levels.front();
   GroundPlane ground = StandOnPlane(feet, timestamps, vertical.up, level.level_m + kAnkleHeight, {});
   ground.found = true;
+  ground.why = supports.why;
   ground.up_sigma_rad = std::sqrt(2) * vertical.sigma_rad;
   ground.offset_sigma_m = level.sigma_m;
   return ground;
 }
 
-/// The leg, 0: left, to which a joint belongs; -1: to none.
-int LegOf(const std::string& joint) {
-  for (const char* part : {"hip", "knee", "ankle", "foot"}) {
-    if (joint == std::string("l_") + part) return 0;
-    if (joint == std::string("r_") + part) return 1;
+/// The lowest of the points in frames `index` of a problem; no evidence where its leg's ankle is not `seen`, as that
+/// leg is where the pose prior has it.
+std::vector<LowestPoint> LowestPoints(const SequenceProblem& problem, const std::vector<ContactPoint>& points,
+                                      const std::vector<int>& index, const std::vector<std::array<FootPlace, 2>>& feet,
+                                      const Vector3d& up) {
+  const BodyModel& body = *problem.layout.model;
+  const int head = body.FindJoint("head"), wrists[2] = {body.FindJoint("l_wrist"), body.FindJoint("r_wrist")};
+  std::vector<LowestPoint> lowest(index.size());
+  if (points.empty()) return lowest;
+  ContactPlaces places;
+  std::vector<Eigen::Matrix3Xd> at(index.size());
+  for (size_t i = 0; i < index.size(); ++i) places.Evaluate(problem, index[i], points, &at[i]);
+  const auto highest = [&](size_t i, int joint) {
+    double height = -std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < points.size(); ++k) {
+      if (points[k].joint == joint) height = std::max(height, up.dot(at[i].col(static_cast<Eigen::Index>(k))));
+    }
+    return height;
+  };
+  for (size_t i = 0; i < index.size(); ++i) {
+    Eigen::Index k = 0;
+    (up.transpose() * at[i]).minCoeff(&k);
+    const size_t before = i > 0 ? i - 1 : i, after = i + 1 < index.size() ? i + 1 : i;
+    const double seconds = problem.timestamps[index[after]] - problem.timestamps[index[before]];
+    const double moved = (at[after].col(k) - at[before].col(k)).norm();
+    // Somebody who hangs has both hands overhead, and legs that rest on nothing.
+    const double above = highest(i, head);
+    const bool may_hang = highest(i, wrists[0]) > above && highest(i, wrists[1]) > above;
+    const int leg = points[static_cast<size_t>(k)].leg;
+    const bool is_seen = leg < 0 || feet[i][leg].seen;
+    lowest[i] = {problem.timestamps[index[i]], at[i].col(k), seconds > 0 ? moved / seconds : 0, is_seen && !may_hang};
   }
-  return -1;
+  return lowest;
 }
 
 /// The lifter's up direction, in the scene.
@@ -71,7 +100,6 @@ ClipGround::ClipGround(const ClipTermInput& clip)
       lines_(known_ == nullptr && clip.input.camera_from_scene == nullptr ? clip.input.picture_vertical : nullptr),
       lifted_(clip.lifted.frames),
       landmarks_(clip.lifted_landmarks),
-      points_(FindContactPoints(*clip.layout.model)),
       why_not_(WhyNoGround(clip.input, clip.options)) {}
 
 std::unique_ptr<ClipTerm> MakeClipGround(const ClipTermInput& clip) { return std::make_unique<ClipGround>(clip); }
@@ -149,39 +177,6 @@ GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& 
   return EstimateGroundPlane(feet, timestamps, up, options);
 }
 
-std::vector<LowestPoint> ClipGround::LowestPoints(const SequenceProblem& problem, const std::vector<int>& index,
-                                                  const std::vector<std::array<FootPlace, 2>>& feet,
-                                                  const Vector3d& up) const {
-  const BodyModel& body = *problem.layout.model;
-  const int head = body.FindJoint("head"), wrists[2] = {body.FindJoint("l_wrist"), body.FindJoint("r_wrist")};
-  std::vector<LowestPoint> lowest(index.size());
-  if (points_.empty()) return lowest;
-  ContactPlaces places;
-  std::vector<Eigen::Matrix3Xd> at(index.size());
-  for (size_t i = 0; i < index.size(); ++i) places.Evaluate(problem, index[i], points_, &at[i]);
-  const auto highest = [&](size_t i, int joint) {
-    double height = -std::numeric_limits<double>::infinity();
-    for (size_t k = 0; k < points_.size(); ++k) {
-      if (points_[k].joint == joint) height = std::max(height, up.dot(at[i].col(static_cast<Eigen::Index>(k))));
-    }
-    return height;
-  };
-  for (size_t i = 0; i < index.size(); ++i) {
-    Eigen::Index k = 0;
-    (up.transpose() * at[i]).minCoeff(&k);
-    const size_t before = i > 0 ? i - 1 : i, after = i + 1 < index.size() ? i + 1 : i;
-    const double seconds = problem.timestamps[index[after]] - problem.timestamps[index[before]];
-    const double moved = (at[after].col(k) - at[before].col(k)).norm();
-    // Somebody who hangs has both hands overhead, and legs that rest on nothing.
-    const double above = highest(i, head);
-    const bool may_hang = highest(i, wrists[0]) > above && highest(i, wrists[1]) > above;
-    const int leg = LegOf(body.data().joint_names[points_[static_cast<size_t>(k)].joint]);
-    const bool is_seen = leg < 0 || feet[i][leg].seen;
-    lowest[i] = {problem.timestamps[index[i]], at[i].col(k), seconds > 0 ? moved / seconds : 0, is_seen && !may_hang};
-  }
-  return lowest;
-}
-
 void ClipGround::StandOnFloors(const SupportLevels& levels, const std::vector<int>& index,
                                const std::vector<int>& frames, Shot* shot, SequenceProblem* coarse,
                                SequenceProblem* problem) const {
@@ -207,11 +202,12 @@ bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coar
   const std::vector<std::array<FootPlace, 2>> all_feet =
       ObservedFeet(*coarse, frames, lifted_, landmarks_, *keypoints_);
   standing_speed_mps_ = StandingSpeed(all_feet, coarse->timestamps, {});
+  const std::vector<ContactPoint> points = FindContactPoints(*coarse->layout.model);
   std::vector<char> held(lifted_.size(), 0);
   bool any = false;
   for (Shot& shot : shots_) {
     if (!shot.up.found) {
-      shot.why = "the vertical is not clear";
+      shot.ground.why = "the vertical is not clear";
       continue;
     }
     std::vector<std::array<FootPlace, 2>> feet;
@@ -232,15 +228,11 @@ bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coar
     }
     JoinLines(*coarse, &shot);
     shot.ground = PlaneUnder(feet, timestamps, shot.joined);
-    shot.why = shot.ground.why;
     const std::optional<double> level =
         shot.ground.found ? std::optional(shot.ground.offset_m - kAnkleHeight) : std::nullopt;
-    const SupportLevels supports = FindSupportLevels(LowestPoints(*coarse, index, feet, shot.ground.normal),
+    const SupportLevels supports = FindSupportLevels(LowestPoints(*coarse, points, index, feet, shot.ground.normal),
                                                      shot.ground.normal, shot.joined.sigma_rad, level);
-    if (!shot.ground.found && !supports.levels.empty()) {
-      shot.ground = RestOn(supports.levels.front(), feet, timestamps, shot.joined);
-      shot.why = supports.why;
-    }
+    if (!shot.ground.found && !supports.levels.empty()) shot.ground = RestOn(supports, feet, timestamps, shot.joined);
     if (!shot.ground.found) {
       SetUpright(shot, shot.joined.up, problem);
       continue;
@@ -304,7 +296,7 @@ void ClipGround::Summarise(const SequenceProblem& problem, TrackSequenceSummary*
   PlaceOnFloor(problem, result.up, &result.stances);
   const GroundPlane& ground = longest->ground;
   result.has_plane = ground.found;
-  result.why = longest->why;
+  result.why = ground.why;
   for (size_t k = 1; k < longest->levels.size(); ++k) {
     const double higher = longest->floors[k]->level_m - longest->floors[0]->level_m;
     result.why += Concatenate("; ", std::round(10 * longest->levels[k].seconds) / 10, " s ",

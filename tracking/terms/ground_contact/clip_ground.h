@@ -18,7 +18,6 @@
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
 #include "tracking/room/picture_vertical.h"
-#include "tracking/problem/contact_points.h"
 
 namespace bodyloom {
 
@@ -45,7 +44,6 @@ class ClipGround : public ClipTerm {
     UpEstimate up;          ///< the lifter's, or as given
     JoinedVertical joined;  ///< with the lines of the picture
     GroundPlane ground;
-    std::string why;                                   ///< the evidence for the ground, or the reason why there is none
     std::vector<SupportLevel> levels;                  ///< the main one first; none without a ground
     std::vector<std::unique_ptr<FrameGround>> floors;  ///< by level; frames point to theirs
     std::vector<StandingFoot> stances;                 ///< without their places
@@ -59,11 +57,6 @@ class ClipGround : public ClipTerm {
   void PlaceOnFloor(const SequenceProblem& problem, const Eigen::Vector3d& up,
                     std::vector<StandingFoot>* stances) const;
   void SetUpright(const Shot& shot, const Eigen::Vector3d& up, SequenceProblem* problem) const;
-  /// The lowest point of the body in frames `index` of a problem; no evidence where its leg's ankle is not `seen`, as
-  /// that leg is where the pose prior has it.
-  [[nodiscard]] std::vector<LowestPoint> LowestPoints(const SequenceProblem& problem, const std::vector<int>& index,
-                                                      const std::vector<std::array<FootPlace, 2>>& feet,
-                                                      const Eigen::Vector3d& up) const;
   /// Lets the frames of a shot point to the floors of its levels. `levels` are by the frames `index` of `coarse`, which
   /// are `frames` of the clip.
   void StandOnFloors(const SupportLevels& levels, const std::vector<int>& index, const std::vector<int>& frames,
@@ -77,7 +70,6 @@ class ClipGround : public ClipTerm {
   double focal_log_sigma_ = 0;    ///< of the focal length that the fit begins with; 0: known
   const std::vector<LiftedFrame>& lifted_;
   const LiftedLandmarks& landmarks_;
-  const std::vector<ContactPoint> points_;
   std::vector<Shot> shots_;
   std::string why_not_;
   int contact_frames_ = 0;

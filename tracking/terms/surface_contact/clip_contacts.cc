@@ -109,9 +109,10 @@ std::vector<char> FindTouching(const SequenceProblem& problem, const std::vector
 
 /// A place of the ground in one frame, by the sole of a foot, or by the lowest point where only others touch.
 struct Touch {
-  bool is_bound = false;                ///< nothing touches: the ground is at most as high
-  int side = 0;                         ///< 1: left foot, -1: right
-  Vector3d place_m = Vector3d::Zero();  ///< of the ground under it
+  bool is_bound = false;                 ///< nothing touches: the ground is at most as high
+  int side = 0;                          ///< 1: left foot, -1: right
+  Vector3d place_m = Vector3d::Zero();   ///< of the ground under it
+  Vector3d camera_m = Vector3d::Zero();  ///< position of the camera
   double seconds = 0;
 };
 
@@ -120,26 +121,27 @@ void FindTouches(const SequenceProblem& problem, const std::vector<ContactPoint>
   const Vector3d up = problem.frames[t].ground->up;
   const bool has_before = t > 0 && problem.cut_before[t] == 0;
   const double seconds = has_before ? problem.timestamps[t] - problem.timestamps[t - 1] : 0;
-  bool soles = false, others = false;
-  for (const int side : {1, -1}) {
+  const CameraPose* camera = problem.frames[t].camera_from_scene;
+  const Vector3d camera_m = camera != nullptr ? CentreOf(*camera) : Vector3d::Zero();
+  bool soles = false;
+  for (const int leg : {0, 1}) {
     Vector3d sum = Vector3d::Zero();
     int count = 0;
     for (size_t k = 0; k < touching.size(); ++k) {
-      if (touching[k] == 0 || !points[k].sole) continue;
-      const bool is_left = problem.layout.model->data().joint_names[points[k].joint].starts_with("l_");
-      if (is_left != (side > 0)) continue;
+      if (touching[k] == 0 || !points[k].sole || points[k].leg != leg) continue;
       sum += all.places[t].col(static_cast<Eigen::Index>(k)) - points[k].rest_m * up;
       ++count;
     }
     if (count == 0) continue;
-    touches->push_back({false, side, sum / count, seconds});
+    touches->push_back({false, leg == 0 ? 1 : -1, sum / count, camera_m, seconds});
     soles = true;
   }
   if (soles) return;
   Eigen::Index lowest = 0;
   all.heights[t].minCoeff(&lowest);
-  for (const char touches_here : touching) others = others || touches_here != 0;
-  touches->push_back({!others, 0, all.places[t].col(lowest), seconds});
+  const bool others =
+      std::any_of(touching.begin(), touching.end(), [](char touches_here) { return touches_here != 0; });
+  touches->push_back({!others, 0, all.places[t].col(lowest), camera_m, seconds});
 }
 
 /// Fits the grounds of one shot by Gauss–Newton with weights of Geman–McClure; of bounds, Huber's.
@@ -165,7 +167,7 @@ void FitGrounds(const std::vector<FrameGround*>& grounds, const std::vector<std:
       H(2 + k, 2 + k) = 1e-6;
       rhs[2 + k] = 1e-6 * x[2 + k];
       for (const Touch& touch : touches[k]) {
-        const double along = measured.dot(touch.place_m.normalized()) * depth_m;
+        const double along = measured.dot((touch.place_m - touch.camera_m).normalized()) * depth_m;
         const double information = 1 / (kTouchSigmaM * kTouchSigmaM + along * along);
         VectorXd row = VectorXd::Zero(3 + n);
         row[0] = e1.dot(touch.place_m);
@@ -177,7 +179,7 @@ void FitGrounds(const std::vector<FrameGround*>& grounds, const std::vector<std:
         if (touch.is_bound && residual > 0) continue;
         const double sigmas = std::abs(residual) * std::sqrt(information);
         const double robust = touch.is_bound ? std::min(1.0, 3 / sigmas) : GemanMcClure(sigmas * sigmas, 3).weight;
-        const double weight = touch.seconds / kCorrelation_s * information * robust;
+        const double weight = touch.seconds / kTouchErrorLasts_s * information * robust;
         H += weight * row * row.transpose();
         rhs -= weight * (measured.dot(touch.place_m) + below) * row;
       }
@@ -251,7 +253,7 @@ void ClipContacts::Observe(SequenceProblem* problem) {
   for (FrameData& frame : problem->frames) frame.Get<SurfaceContactTerm>();
 }
 
-void ClipContacts::StartRound(int round, const std::vector<int>& /*frames*/, SequenceProblem* problem) {
+void ClipContacts::StartRound(int /*round*/, const std::vector<int>& /*frames*/, SequenceProblem* problem) {
   Heights all = Measure(*problem, points_, num_threads_);
   const std::vector<char> hovers = FindHovering(*problem, centre_of_mass_, all.lowest, num_threads_);
   std::vector<std::vector<char>> touches(problem->frames.size());

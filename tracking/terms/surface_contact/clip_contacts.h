@@ -11,10 +11,10 @@
 /// Each round begins by fitting the grounds of a shot, parallel planes, to what touches them:
 ///   Σ w ρ((u · x − l ∓ d)² / σ²) + ‖(u − u₀) across u₀‖² / σ_u² + d² / kFeetApartM²  → min over u, d, every level l
 /// x: a foot's sole, or the lowest point if only others touch; ∓ d: left and right foot, because many people keep one
-/// heel raised, which is no slope; σ² = kTouchSigmaM² + (u · ray · depth)², depth the σ of a stance's depth; w:
-/// seconds / kCorrelation_s, because a track's errors last; u₀, σ_u: the vertical as measured without the ground. A
-/// frame without touch bounds the ground, which is at most kTouchingM above its lowest point. The fit's covariance
-/// gives the variance of the ground's height at any place. A ground that is given stays where it is.
+/// heel raised, which is no slope; σ² = kTouchSigmaM² + (u · ray · depth)², ray from the camera to x, depth the σ of a
+/// stance's depth; w: seconds / kTouchErrorLasts_s, because a track's errors last; u₀, σ_u: the vertical as measured
+/// without the ground. A frame without touch bounds the ground, which is at most kTouchingM above its lowest point. The
+/// fit's covariance gives the variance of the ground's height at any place. A ground that is given stays where it is.
 #pragma once
 
 #include <memory>
@@ -33,7 +33,9 @@ inline constexpr double kTouchingM = 0.06, kTouchingSpeed = 0.3, kMaxHoverM = 0.
 inline constexpr double kShortFlight_s = 0.4;  ///< whose fall the track is too smooth to show
 inline constexpr double kTouchSigmaM = 0.03;   ///< of the height of what touches: a track's errors, raised heels
 inline constexpr double kFeetApartM = 0.03;    ///< σ of d
-inline constexpr double kCorrelation_s = 1.5;
+/// Of the whole error of a touch, by depth and the pose of feet, which lasts as long as a posture. The scatter of
+/// heights alone, without what all frames are off together, lasts less (initialise/support_levels.cc).
+inline constexpr double kTouchErrorLasts_s = 1.5;
 inline constexpr double kMinFall = 2.5;  ///< m/s²; a quarter of g, because the track and the parabola are smooth
 
 /// True if contacts with the ground are looked for.

@@ -196,11 +196,34 @@ TEST(ClipContacts, APathTellsTheVertical) {
   // Three independent measurements, since a track's errors last: sure in their middle, less so at the ends of the path
   // and unknown far from it.
   const double across = found.HeightVariance(Vector3d(0, 1.2, 4)), end = found.HeightVariance(Vector3d(1.5, 1.2, 4));
-  EXPECT_NEAR(std::sqrt(across), std::hypot(kTouchSigmaM, 0.12 * 1.2 / 4.2) / std::sqrt(70 / kRate / kCorrelation_s),
-              0.01);
+  EXPECT_NEAR(std::sqrt(across),
+              std::hypot(kTouchSigmaM, 0.12 * 1.2 / 4.2) / std::sqrt(70 / kRate / kTouchErrorLasts_s), 0.01);
   EXPECT_GT(end, 1.5 * across);
   EXPECT_LT(end, 0.05 * 0.05);
   EXPECT_GT(found.HeightVariance(Vector3d(0, 1.2, 9)), 0.1 * 0.1);
+}
+
+/// Depth is along the ray from the camera, wherever the origin of the scene is.
+TEST(ClipContacts, TheGroundIsTheSameFromACameraThatIsElsewhereInTheScene) {
+  const Vector3d wrong = RotationFromAxisAngle(Vector3d(0, 0, 4 * M_PI / 180)) * Vector3d(0, -1, 0);
+  const auto run = [&](const Vector3d& elsewhere) {
+    Clip clip(70, [](double) { return 0.0; });
+    const CameraPose camera{Eigen::Matrix3d::Identity(), -elsewhere};
+    for (int t = 0; t < 70; ++t) {
+      clip.problem()->frames[t].camera_from_scene = &camera;
+      clip.problem()->states[t].translation += Vector3d(0.5 * (t / 10) - 1.5, 0, 0) + elsewhere;
+    }
+    clip.ground()->up = clip.ground()->measured_up = wrong;
+    clip.ground()->level_m = wrong.dot(Vector3d(0, 1.2, 4) + elsewhere);
+    for (int round = 0; round < 3; ++round) clip.Start(round);
+    return *clip.ground();
+  };
+  const Vector3d elsewhere(3, -1, 2), place(1.5, 1.2, 4);
+  const FrameGround here = run(Vector3d::Zero()), there = run(elsewhere);
+  EXPECT_LT((here.up - there.up).norm(), 1e-6);
+  EXPECT_NEAR(there.level_m - there.up.dot(elsewhere), here.level_m, 1e-6);
+  EXPECT_NEAR(there.up_sigma_rad, here.up_sigma_rad, 1e-6);
+  EXPECT_NEAR(std::sqrt(there.HeightVariance(place + elsewhere)), std::sqrt(here.HeightVariance(place)), 1e-6);
 }
 
 /// Somebody who runs touches nothing for long, but cannot be 30 cm below the ground.
