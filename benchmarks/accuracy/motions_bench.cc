@@ -148,7 +148,14 @@ Worst WorstOf(const std::vector<double>& pa_of_frame, const std::string& clip, c
   return {*frame, Concatenate(clip, ", camera ", elevation, " degrees from above: ", text)};
 }
 
+void CheckGround(const std::string& ground) {
+  const bool known =
+      ground == "with" || ground == "without" || ground == "without-contacts" || ground == "without-balance";
+  BODYLOOM_CHECK(known, "--ground is '", ground, "', expected with, without, without-contacts or without-balance");
+}
+
 void Run(const BenchArguments& arguments, const std::string& command) {
+  for (const std::string& ground : arguments.List("ground")) CheckGround(ground);
   std::map<std::pair<std::string, std::string>, std::map<std::string, Sums>> groups;  // by (camera, --ground), by class
   std::vector<Worst> worst;
   const LifterWeights* lifter = LifterOf(arguments.Text("lifter"));

@@ -143,8 +143,11 @@ std::string ToText(const TrackReport& report) {
     text += "repaired " + std::to_string(solve.num_swaps_repaired) + " left-right swaps in the detections\n";
   }
   if (solve.ground.has_plane) {
-    text += "ground   " + Fixed(solve.ground.camera_height_m, 2) + " m below the camera, feet held in " +
-            std::to_string(solve.ground.contact_frames) + " frames (" + solve.ground.why + ")\n";
+    text += "ground   " + Fixed(solve.ground.camera_height_m, 2) + " m below the camera";
+    if (solve.ground.contact_frames > 0) {
+      text += ", feet held in " + std::to_string(solve.ground.contact_frames) + " frames";
+    }
+    text += " (" + solve.ground.why + ")\n";
   } else if (!solve.ground.why.empty()) {
     text += "ground   none: " + solve.ground.why + "\n";
   }

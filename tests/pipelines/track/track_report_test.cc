@@ -66,6 +66,9 @@ TEST(TrackReport, TheGroundOrWhyThereIsNone) {
   EXPECT_EQ(ground["camera_height_m"], 1.25);
   EXPECT_EQ(ground["contact_frames"], 7);
   EXPECT_THAT(ToText(report), HasSubstr("ground   1.25 m below the camera, feet held in 7 frames (3 stances on it)\n"));
+  found.contact_frames = 0;
+  found.why = "the body rests on it for 2.5 s";
+  EXPECT_THAT(ToText(report), HasSubstr("ground   1.25 m below the camera (the body rests on it for 2.5 s)\n"));
 }
 
 TEST(TrackReport, SecondsSplitTheSolveAndLoseNothing) {
