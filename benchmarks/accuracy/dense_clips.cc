@@ -175,7 +175,7 @@ ProjectionBound DenseBound(const BodyModel& body, const SynthClip& clip, const D
     data.Get<DenseTerm>().points = &inliers;
     data.Get<DenseTerm>().kernel = 1e6;  // no robust weights: the bound of the Gaussian part
     FrameSystem system;
-    evaluator.Evaluate(layout, data, states.back(), betas, 0, true, &system);
+    evaluator.Evaluate(layout, data, states.back(), SharedValues{betas, 0, {}}, true, &system);
     MatrixXd H = system.H.selfadjointView<Eigen::Lower>();
     H.diagonal().head(3 * body.num_joints()).array() += 1 / (options.rotation_sigma_rad * options.rotation_sigma_rad);
     information.band[0].emplace_back(H.topLeftCorner(p, p));

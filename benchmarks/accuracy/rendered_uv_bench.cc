@@ -34,6 +34,7 @@
 #include "tracking/clip/clip_fit.h"
 #include "tracking/initialise/lifted_landmarks.h"
 #include "tracking/initialise/lifted_start.h"
+#include "tracking/initialise/view_observations.h"
 #include "tracking/problem/clip_term.h"
 #include "tracking/solvers/solve_sequence.h"
 #include "tracking/terms/dense/dense.h"
@@ -192,13 +193,15 @@ BasinResult SolveFrame(const SynthClip& clip, const std::string& method, const s
   const ObservedLandmarks no_landmarks;
   const LiftedStart not_lifted;
   const LiftedLandmarks none_lifted;
+  const std::vector<ViewObservations> no_views;
   const std::unique_ptr<ClipTerm> rounds = MakeDenseRounds({.input = input,
                                                             .options = options,
                                                             .layout = problem.layout,
                                                             .landmarks = no_landmarks,
                                                             .joints = nullptr,
                                                             .lifted = not_lifted,
-                                                            .lifted_landmarks = none_lifted});
+                                                            .lifted_landmarks = none_lifted,
+                                                            .views = no_views});
   SolveOptions solve;
   solve.max_iterations = 60;
   solve.shape_constant = true;

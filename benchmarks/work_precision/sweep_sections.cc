@@ -68,8 +68,7 @@ void EvaluationSection(WorkBench* bench) {
       const auto evaluate_all = [&]() {
         for (int round = 0; round < rounds; ++round) {
           for (size_t t = 0; t < problem.frames.size(); ++t) {
-            evaluator.Evaluate(problem.layout, problem.frames[t], problem.states[t], problem.betas, problem.log_focal,
-                               derivatives, &system);
+            evaluator.Evaluate(problem.layout, problem.frames[t], problem.states[t], problem, derivatives, &system);
           }
         }
       };

@@ -19,13 +19,11 @@
 namespace bodyloom {
 
 /// Points into itself (data, layout): not to be copied.
-struct FrameScene {
+struct FrameScene : SharedValues {
   BodyModel body;
   FrameLayout layout;
   FrameData data;
   FrameState state;
-  Eigen::VectorXd betas;
-  double log_focal = 0;
   std::vector<DenseKeypoint> dense;
   explicit FrameScene(const BodyModelData& data = ToyBodyData()) : body(data) {}
   FrameScene(const FrameScene&) = delete;
@@ -73,7 +71,7 @@ inline void PoseAtRandom(CameraKnowledge knowledge, double pose_size, std::mt199
 inline FrameSystem Evaluate(const FrameScene& scene, bool derivatives = true) {
   FrameEvaluator evaluator;
   FrameSystem system;
-  evaluator.Evaluate(scene.layout, scene.data, scene.state, scene.betas, scene.log_focal, derivatives, &system);
+  evaluator.Evaluate(scene.layout, scene.data, scene.state, scene, derivatives, &system);
   return system;
 }
 

@@ -15,6 +15,7 @@
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
 #include "tracking/clip/camera_scale.h"
+#include "tracking/clip/clip_views.h"
 #include "tracking/clip/term_kinds.h"
 #include "tracking/clip/track_plan.h"
 #include "tracking/clip/track_result.h"
@@ -54,6 +55,9 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
   camera.height = height;
   return camera;
 }
+
+/// σ of adults' stature, metres: of a person whose size cameras at known places measure.
+constexpr double kStatureSpreadM = 0.1;
 
 /// Widens the kernels of dense keypoints for starts from hypotheses. Errors of hypotheses are proportional to the body,
 /// while a dense keypoint's σ is in pixels: in a large image all keypoints would be outliers at the start. (Starts from
@@ -117,8 +121,15 @@ void ClipFit::SetUpProblem() {
   problem_.betas = VectorXd::Zero(num_betas);
   problem_.log_focal = problem_.log_focal_prior = std::log(camera.fx);
   problem_.log_focal_sigma = input_.focal_prior.value_or(FocalPrior()).log_sigma;
+  if (input_.start != nullptr && input_.start->focal_px > 0 && problem_.layout.focal_column >= 0) {
+    problem_.log_focal = std::log(input_.start->focal_px);
+  }
+  AddViews(input_, &problem_);
   stature_m_ = AssumedStature(input_);
   problem_.shape_prior.height_m = summary_.stature_m = input_.stature_m;
+  const bool measured = input_.views != nullptr && std::any_of(input_.views->begin(), input_.views->end(),
+                                                               [](const ViewInput& view) { return view.pose_known; });
+  if (measured && input_.stature_m == 0) problem_.shape_prior.height_sigma_m = kStatureSpreadM;
 }
 
 bool ClipFit::FindStart() {
@@ -135,12 +146,20 @@ bool ClipFit::FindStart() {
   }
   problem_.states = std::move(initial.states);
   problem_.betas = initial.betas;
+  if (input_.start != nullptr) StartFrom(*input_.start);
+  views_ = ObserveViews(input_, problem_.layout, options_);
   problem_.shape_prior.mean = initial.betas;
   clock_.Record("initialise");
   if (!lifted_.frames.empty()) {
     lifted_landmarks_ = CompileLiftedLandmarks(*input_.body, problem_.layout.num_betas);
   }
   return true;
+}
+
+void ClipFit::StartFrom(const TrackStart& start) {
+  problem_.states = start.states;
+  const Eigen::Index given = std::min<Eigen::Index>(start.betas.size(), problem_.layout.num_betas);
+  problem_.betas.head(given) = start.betas.head(given);
 }
 
 void ClipFit::FollowCamera() {
@@ -166,6 +185,7 @@ void ClipFit::Observe() {
                            .joints = joints_,
                            .lifted = lifted_,
                            .lifted_landmarks = lifted_landmarks_,
+                           .views = views_,
                            .stature_m = stature_m_,
                            .num_threads = threads_};
   for (const TermKind& kind : TermKinds()) {
@@ -264,7 +284,7 @@ void ClipFit::ScaleCameraPath(double scale_m, SequenceProblem* coarse) {
 
 void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
   constexpr double kHeldLogSigma = 1e-4;
-  const bool joints_alone = !lifted_.frames.empty() && input_.dense == nullptr;
+  const bool joints_alone = !lifted_.frames.empty() && input_.dense == nullptr && problem_.views.empty();
   if (problem_.layout.focal_column < 0 || !joints_alone || !runner_->ok()) return;
   const FocalFit fit{coarse->log_focal, FocalLogSigmaOf(*coarse, threads_)};
   const FocalFit joined =
@@ -356,6 +376,8 @@ void ClipFit::FillJointSigma(Track* track) {
   // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
   const PositionSigma sigma =
       PositionSigmaOf(SelectFrames(problem_, coarse_frames_), threads_, &summary_.focal_log_sigma);
+  SetViewSigma(problem_.layout, sigma.shared, &summary_);
+  if (!problem_.views.empty()) summary_.focal_log_sigma *= kViewSigmaFactor;
   const auto distance = [&](size_t i, size_t t) {
     return std::abs(problem_.timestamps[coarse_frames_[i]] - problem_.timestamps[t]);
   };

@@ -11,6 +11,7 @@
 #include "tracking/clip/track_stages.h"
 #include "tracking/initialise/lifted_landmarks.h"
 #include "tracking/initialise/lifted_start.h"
+#include "tracking/initialise/view_observations.h"
 #include "tracking/problem/clip_term.h"
 #include "tracking/problem/sequence_problem.h"
 #include "tracking/problem/track_input.h"
@@ -45,6 +46,7 @@ class ClipFit {
  private:
   void CleanObservations();
   void SetUpProblem();
+  void StartFrom(const TrackStart& start);
   /// Transforms states and frames from the camera frames into the scene of a moving camera.
   void FollowCamera();
   void FitNearStart(SequenceProblem* coarse);
@@ -82,6 +84,7 @@ class ClipFit {
   SequenceProblem problem_;
   LiftedStart lifted_;
   LiftedLandmarks lifted_landmarks_;
+  std::vector<ViewObservations> views_;
   std::optional<FocalFit> settled_focal_;
   std::vector<std::unique_ptr<ClipTerm>> terms_;
   std::vector<int> coarse_frames_;

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "tracking/clip/clip_views.h"
 #include "tracking/problem/track_summary.h"
 #include "tracking/problem/user_cost.h"
 #include "tracking/terms/balance/clip_balance.h"
@@ -24,13 +25,21 @@ namespace bodyloom {
 
 std::span<const TermKind> TermKinds() {
   static constexpr TermKind kKinds[] = {
-      {PlanLandmarks, MakeLandmarkTerms},      {PlanDense, MakeDenseTerms},
-      {PlanRenderedUv, MakeDenseRounds},       {PlanPartLabels, MakePartLabelRounds},
-      {PlanLifted, MakeLiftedPoseTerms},       {PlanGround, MakeClipGround},
-      {PlanSurfaceContact, MakeClipContacts},  {PlanBalance, MakeClipBalance},
-      {PlanPosePrior, MakePosePriorTerms},     {PlanJointLimits, MakeJointLimitTerms},
-      {PlanUpright, MakeUprightTerms},         {PlanStraightKnees, MakeStraightKneesTerms},
-      {PlanInitialiser, MakeInitialiserTerms}, {PlanUserTerms, MakeUserTerms},
+      {PlanLandmarks, MakeLandmarkTerms},
+      {PlanDense, MakeDenseTerms},
+      {PlanRenderedUv, MakeDenseRounds},
+      {PlanPartLabels, MakePartLabelRounds},
+      {PlanLifted, MakeLiftedPoseTerms},
+      {PlanGround, MakeClipGround},
+      {PlanSurfaceContact, MakeClipContacts},
+      {PlanBalance, MakeClipBalance},
+      {PlanPosePrior, MakePosePriorTerms},
+      {PlanJointLimits, MakeJointLimitTerms},
+      {PlanUpright, MakeUprightTerms},
+      {PlanStraightKnees, MakeStraightKneesTerms},
+      {PlanInitialiser, MakeInitialiserTerms},
+      {PlanUserTerms, MakeUserTerms},
+      {PlanViews, MakeClipViews},
   };
   return kKinds;
 }

@@ -33,7 +33,9 @@ Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& op
 bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem) {
   if (!ok_) return false;
   for (const FrameData& frame : problem->frames) {
-    for (const auto& term : frame.terms) term->BeginStage({stage.pull, stage.landmark_kernel});
+    frame.ForEachTerm([&](FrameTerm* term, const std::string&) {
+      term->BeginStage({stage.pull, stage.landmark_kernel});
+    });
   }
   if (solver == SequenceSolver::kChain && NumFarRows(*problem) > ChainProblem::kMaxFarRows) {
     solver = SequenceSolver::kCeres;

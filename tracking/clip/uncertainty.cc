@@ -92,17 +92,20 @@ double JointSpread::HipsSigma() const { return std::sqrt(hips.trace() / 3); }
 
 PositionSigma PositionSigma::Unknown(Eigen::Index num_frames, int num_joints) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  return {RowMatrixXd::Constant(num_frames, num_joints, kNaN), VectorXd::Constant(num_frames, kNaN)};
+  return {RowMatrixXd::Constant(num_frames, num_joints, kNaN), VectorXd::Constant(num_frames, kNaN), VectorXd()};
 }
 
 PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma) {
   const auto T = static_cast<Eigen::Index>(problem.states.size());
   PositionSigma sigma = PositionSigma::Unknown(T, problem.layout.model->num_joints());
-  for (FrameData& frame : problem.frames) frame.Get<LiftedPoseTerm>().weight = 0;
+  for (FrameData& frame : problem.frames) {
+    frame.Get<LiftedPoseTerm>().weight = 0;
+    for (ViewTerms& view : frame.views) view.terms.Get<LiftedPoseTerm>().weight = 0;
+  }
   // More than chain supports: the covariance is computed without them, which overestimates it.
   if (NumFarRows(problem) > ChainProblem::kMaxFarRows) problem.couplings.clear();
   ChainProblem chain(problem, false, false, num_threads);
-  if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
+  if (!std::isfinite(chain.Linearise(ChainPoint(problem.states, problem)))) return sigma;
   ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
   VisitCovariance(&chain, &factor, 0, static_cast<int>(T), num_threads, [&](int t, const MatrixXd& P) {
     const JointSpread spread = JointSpreadOf(problem.layout, problem.states[t], problem.betas, P);
@@ -112,9 +115,10 @@ PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* 
         frame.camera_from_scene == nullptr ? Matrix3d::Identity() : frame.camera_from_scene->camera_from_world_rotation;
     sigma.joints.row(t) = (lifted == nullptr ? JointSigmaOf(spread) : JointSigmaOf(spread, *lifted, turn)).transpose();
     sigma.hips[t] = spread.HipsSigma();
-    // The last of the shared values, the same in every frame's covariance.
+    // The same in every frame's covariance.
+    if (t == 0) sigma.shared = P.diagonal().tail(problem.layout.num_columns - problem.layout.beta_column).cwiseSqrt();
     if (t == 0 && focal_log_sigma != nullptr && problem.layout.focal_column >= 0) {
-      *focal_log_sigma = std::sqrt(P(P.rows() - 1, P.cols() - 1));
+      *focal_log_sigma = std::sqrt(P(problem.layout.focal_column, problem.layout.focal_column));
     }
   });
   return sigma;
@@ -124,12 +128,13 @@ double FocalLogSigmaOf(const SequenceProblem& problem, int num_threads) {
   double sigma = std::numeric_limits<double>::quiet_NaN();
   if (problem.layout.focal_column < 0) return sigma;
   ChainProblem chain(problem, false, false, num_threads);
-  if (!std::isfinite(chain.Linearise({problem.states, problem.betas, problem.log_focal}))) return sigma;
+  if (!std::isfinite(chain.Linearise(ChainPoint(problem.states, problem)))) return sigma;
   ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
   // Of the frame in which the elimination ends, so that no other's is computed on the way.
   const int middle = static_cast<int>(problem.states.size()) / 2;
+  const int focal = problem.layout.focal_column;
   VisitCovariance(&chain, &factor, middle, middle + 1, 1,
-                  [&](int, const MatrixXd& P) { sigma = std::sqrt(P(P.rows() - 1, P.cols() - 1)); });
+                  [&](int, const MatrixXd& P) { sigma = std::sqrt(P(focal, focal)); });
   return sigma;
 }
 

@@ -50,6 +50,8 @@ Eigen::VectorXd JointSigmaOf(const LiftedPose& lifted, int num_joints);
 struct PositionSigma {
   RowMatrixXd joints;    ///< T×J: σ_j, about the middle of the hips
   Eigen::VectorXd hips;  ///< T: JointSpread::HipsSigma(), for a person whose stature is as assumed
+  /// Of the unknowns that all frames share, in the layout's columns from beta_column on.
+  Eigen::VectorXd shared;
 
   /// NaN everywhere.
   static PositionSigma Unknown(Eigen::Index num_frames, int num_joints);

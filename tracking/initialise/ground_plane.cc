@@ -112,6 +112,27 @@ UpEstimate EstimateUp(std::span<const LiftedFrame> frames) {
   return estimate;
 }
 
+JoinedUps JoinUps(std::span<const UpOfView> views) {
+  Vector3d mean = Vector3d::Zero();
+  for (const UpOfView& view : views) mean += view.up;
+  mean.normalize();
+  Eigen::Matrix<double, 2, 3> across;
+  across.row(0) = mean.unitOrthogonal().transpose();
+  across.row(1) = mean.cross(across.row(0).transpose()).transpose();
+  Eigen::Matrix3d H = Eigen::Vector3d(0, 0, 1 / (kUpAlongRad * kUpAlongRad)).asDiagonal();
+  Vector3d rhs = Vector3d::Zero();
+  for (const UpOfView& view : views) {
+    Eigen::Matrix<double, 2, 3> J;
+    J << Eigen::Matrix2d::Identity(), across * view.axis;
+    H += J.transpose() * J / (kUpAcrossRad * kUpAcrossRad);
+    rhs += J.transpose() * (across * view.up) / (kUpAcrossRad * kUpAcrossRad);
+  }
+  const Eigen::Matrix3d covariance = H.inverse();
+  const Vector3d x = covariance * rhs;
+  return {(mean + across.transpose() * x.head<2>()).normalized(),
+          std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)))};
+}
+
 std::vector<Stance> FindStances(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
                                 const GroundPlaneOptions& options) {
   CheckFeet(feet, timestamps);

@@ -33,6 +33,21 @@ struct UpEstimate {
 /// exceeds 20°: then the camera turns, or the lifter is uncertain.
 UpEstimate EstimateUp(std::span<const LiftedFrame> frames);
 
+/// The lifter's up over a shot in one of several views, and that camera's optical axis; in the scene, unit.
+struct UpOfView {
+  Eigen::Vector3d up, axis;
+};
+/// The vertical of several views, and its σ per direction across it. Errors of a view have a part along its optical
+/// axis, where a single image shows least, that views of one person have in common, and a part of their own:
+///   up_v = u + a P axis_v + e_v,   a ~ N(0, kUpAlongRad²),   e_v ~ N(0, kUpAcrossRad² I),   P: across the vertical
+/// Least squares about the mean of the views; one view or more.
+struct JoinedUps {
+  Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);
+  double sigma_rad = 0;
+};
+JoinedUps JoinUps(std::span<const UpOfView> views);
+inline constexpr double kUpAlongRad = 0.08, kUpAcrossRad = 0.04;
+
 inline constexpr double kAnkleHeight = 0.08;  ///< metres above the floor, of the ankle of a foot that stands flat
 
 /// One foot in one frame.
@@ -65,6 +80,13 @@ struct GroundPlaneOptions {
   double up_rad = 0.06;        ///< σ of the lifter's up over a shot
   double max_spread_m = 0.08;  ///< robust σ of the stances' heights
   double off_ground_m = 0.15;  ///< a stance farther from the plane is not on it
+  /// Of a person whom this number of views shows: from two on, the depth is seen.
+  static GroundPlaneOptions OfViews(size_t num_views) {
+    GroundPlaneOptions options;
+    if (num_views < 2) return options;
+    options.depth_m = 0.04;
+    return options;
+  }
 };
 
 struct GroundPlane {

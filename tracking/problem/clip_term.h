@@ -19,6 +19,7 @@ struct ObservedLandmarks;
 struct TrackSequenceInput;
 struct TrackSequenceOptions;
 struct TrackSequenceSummary;
+struct ViewObservations;
 
 /// Input for making the terms of a clip; all of it outlives them.
 struct ClipTermInput {
@@ -29,6 +30,7 @@ struct ClipTermInput {
   const KeypointSequence* joints = nullptr;  ///< 2D joints that the lifter used; null: none
   const LiftedStart& lifted;                 ///< without frames where the lifter does not run
   const LiftedLandmarks& lifted_landmarks;
+  const std::vector<ViewObservations>& views;  ///< the other views
   double stature_m = 0;
   int num_threads = 1;
 };

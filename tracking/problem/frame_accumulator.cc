@@ -22,6 +22,7 @@ void FrameAccumulator::Begin(const FrameLayout& layout, const FrameState& state,
   state_ = &state;
   betas_ = &betas;
   log_focal_ = log_focal;
+  clock_shift_s_ = 0;
   residuals_ = residuals;
   mode_ = mode;
   camera_ = layout.CameraAt(state, log_focal);
@@ -82,6 +83,7 @@ void FrameAccumulator::AddSaturated(double kernel, double weight, int num_rows) 
   DependsOnPoint();
   DependsOn(layout_->TranslationBlock());
   DependsOn(layout_->FocalBlock());
+  DependsOn(layout_->ClockBlock());
 }
 
 void FrameAccumulator::DependsOn(int block) {

@@ -87,6 +87,9 @@ class FrameAccumulator {
   [[nodiscard]] const Eigen::VectorXd& betas() const { return *betas_; }
   [[nodiscard]] double log_focal() const { return log_focal_; }
   [[nodiscard]] const Camera& camera() const { return camera_; }
+  /// Time by which the observations of a view are moved (view_terms.h); to be set after Begin().
+  void SetClockShift(double seconds) { clock_shift_s_ = seconds; }
+  [[nodiscard]] double clock_shift_s() const { return clock_shift_s_; }
   [[nodiscard]] bool derivatives() const { return mode_ != Mode::kCost && mode_ != Mode::kNorms; }
   /// True if residuals are requested one by one; then rows must be added even if they are zero at this state.
   [[nodiscard]] bool one_by_one() const { return mode_ != Mode::kCost && mode_ != Mode::kSums; }
@@ -128,19 +131,22 @@ class FrameAccumulator {
   }
   /// The same with a loss function, whose values ρ and ρ′ are given.
   double AddGroup(int num_rows, double squared_norm, double rho, double d_rho, ceres::LossFunction* loss);
-  /// Adds ½ w ρ(‖residual‖²) with ∂residual/∂θ = B ∂pixel/∂θ of the point evaluated last; N rows.
+  /// Adds ½ w ρ(‖residual‖²) with ∂residual/∂θ = B ∂pixel/∂θ of the point evaluated last; N rows. The residual falls by
+  /// B `velocity` when the view's clock is moved by a second.
   template <int N>
   void AddImageRows(const Projected& at, const Eigen::Matrix<double, N, 1>& residual,
-                    const Eigen::Matrix<double, N, 2>& B, double kernel, double weight);
-  /// Adds ½ w ρ(‖W (π(x) − pixel)‖²), x the point evaluated last.
+                    const Eigen::Matrix<double, N, 2>& B, double kernel, double weight,
+                    const Eigen::Vector2d& velocity = Eigen::Vector2d::Zero());
+  /// Adds ½ w ρ(‖W (π(x) − pixel − s velocity)‖²), x the point evaluated last and s the shift of the view's clock.
   void AddPixel(const Eigen::Vector3d& x, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& whitening, double kernel,
-                double weight) {
+                double weight, const Eigen::Vector2d& velocity = Eigen::Vector2d::Zero()) {
     Projected at;
     if (!Project(x, &at)) {
       AddSaturated(kernel, weight);
       return;
     }
-    AddImageRows<2>(at, whitening * (at.pixel - pixel), whitening, kernel, weight);
+    const Eigen::Vector2d residual = at.pixel - pixel - clock_shift_s_ * velocity;
+    AddImageRows<2>(at, whitening * residual, whitening, kernel, weight, velocity);
   }
   /// The next `count` rows of the Jacobian and their residuals, to be filled before TakeRows(count); columns beyond the
   /// layout's are padding and stay zero.
@@ -190,7 +196,7 @@ class FrameAccumulator {
   const FrameLayout* layout_ = nullptr;
   const FrameState* state_ = nullptr;
   const Eigen::VectorXd* betas_ = nullptr;
-  double log_focal_ = 0;
+  double log_focal_ = 0, clock_shift_s_ = 0;
   FrameResiduals* residuals_ = nullptr;
   Mode mode_ = Mode::kCost;
   Kinematics kinematics_;
@@ -211,7 +217,8 @@ class FrameAccumulator {
 
 template <int N>
 void FrameAccumulator::AddImageRows(const Projected& at, const Eigen::Matrix<double, N, 1>& residual,
-                                    const Eigen::Matrix<double, N, 2>& B, double kernel, double weight) {
+                                    const Eigen::Matrix<double, N, 2>& B, double kernel, double weight,
+                                    const Eigen::Vector2d& velocity) {
   const FrameLayout& layout = *layout_;
   const double scale = AddGroup(N, residual.squaredNorm(), kernel, weight);
   if (!derivatives()) return;
@@ -237,12 +244,14 @@ void FrameAccumulator::AddImageRows(const Projected& at, const Eigen::Matrix<dou
   if (layout.focal_column >= 0) {
     rows.col(layout.focal_column) = by_pixel * (at.pixel - Eigen::Vector2d(camera_.cx, camera_.cy));
   }
+  if (layout.clock_column >= 0) rows.col(layout.clock_column) = -by_pixel * velocity;
   r_.segment<N>(row_) = scale * residual;
   row_ += N;
   if (mode_ == Mode::kStructure) {
     DependsOnPoint();
     DependsOn(layout.TranslationBlock());
     DependsOn(layout.FocalBlock());
+    DependsOn(layout.ClockBlock());
   }
 }
 

@@ -24,6 +24,20 @@ void AddShapeOfTranslation(const FrameLayout& layout, std::vector<int>* blocks) 
   if (at == blocks->end() || *at != layout.BetaBlock()) blocks->insert(at, layout.BetaBlock());
 }
 
+/// The group of a compressed system, which depends on everything.
+ResidualGroup AllBlocks(const FrameLayout& layout) {
+  ResidualGroup group;
+  group.num_rows = layout.num_columns + 2;
+  for (int block = 0; block < layout.num_blocks(); ++block) group.blocks.push_back(block);
+  return group;
+}
+
+int NumRows(const TermList& terms) {
+  int rows = 0;
+  for (const auto& term : terms) rows += term->num_rows();
+  return rows;
+}
+
 int NextRow(const FrameRows& rows) {
   return rows.groups.empty() ? 0 : rows.groups.back().first_row + rows.groups.back().num_rows;
 }
@@ -31,42 +45,61 @@ int NextRow(const FrameRows& rows) {
 }  // namespace
 
 void FrameEvaluator::Begin(const FrameLayout& layout, const FrameData& data, const FrameState& state,
-                           const VectorXd& betas, double log_focal, Mode mode, FrameResiduals* residuals) {
+                           const SharedValues& shared, Mode mode, FrameResiduals* residuals) {
   const bool moves = data.camera_from_scene != nullptr;
-  if (moves) in_camera_ = StateInCamera(layout, *data.camera_from_scene, betas, state);
-  sums_.Begin(layout, moves ? in_camera_ : state, betas, log_focal, mode, residuals);
+  if (moves) in_camera_ = StateInCamera(layout, *data.camera_from_scene, shared.betas, state);
+  sums_.Begin(layout, moves ? in_camera_ : state, shared.betas, shared.log_focal, mode, residuals);
+}
+
+ViewColumns FrameEvaluator::BeginView(const FrameLayout& layout, const ViewTerms& view, const FrameState& state,
+                                      const SharedValues& shared, Mode mode, FrameResiduals* residuals) {
+  const ViewLayout& of = layout.views[view.view];
+  const ViewState& pose = shared.views[view.view];
+  in_view_ = StateInCamera(*of.local, pose.camera_from_scene, shared.betas, state);
+  view_sums_.max_points = sums_.max_points;
+  view_sums_.Begin(*of.local, in_view_, shared.betas, pose.log_focal, mode, residuals);
+  view_sums_.SetClockShift(pose.offset_s + pose.rate * view.clock_s - view.sampled_s);
+  return {layout, of, pose, state, shared.betas, view.clock_s};
 }
 
 void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state,
-                              const VectorXd& betas, double log_focal, bool derivatives, FrameSystem* system,
+                              const SharedValues& shared, bool derivatives, FrameSystem* system,
                               FrameResiduals* residuals, std::vector<double>* term_costs) {
-  Begin(layout, data, state, betas, log_focal, derivatives ? Mode::kSums : Mode::kCost, residuals);
-  if (derivatives) {
-    int rows = 0;
-    for (const auto& term : data.terms) rows += term->num_rows();
-    sums_.ReserveRows(rows);
-  }
+  const Mode mode = derivatives ? Mode::kSums : Mode::kCost;
+  const auto add = [&](const TermList& terms, FrameAccumulator* sums) {
+    if (derivatives) sums->ReserveRows(NumRows(terms));
+    for (const auto& term : terms) {
+      const double before = sums->cost();
+      term->Add(sums);
+      if (term_costs != nullptr) term_costs->push_back(sums->cost() - before);
+    }
+  };
   if (term_costs != nullptr) term_costs->clear();
-  for (const auto& term : data.terms) {
-    const double before = sums_.cost();
-    term->Add(&sums_);
-    if (term_costs != nullptr) term_costs->push_back(sums_.cost() - before);
-  }
+  Begin(layout, data, state, shared, mode, residuals);
+  add(data.terms, &sums_);
   sums_.Finish(system);
   if (data.camera_from_scene != nullptr && derivatives) TakeToScene(layout, *data.camera_from_scene, system);
+  for (const ViewTerms& view : data.views) {
+    const ViewColumns columns = BeginView(layout, view, state, shared, mode, residuals);
+    add(view.terms, &view_sums_);
+    view_sums_.Finish(&view_system_);
+    system->cost += view_system_.cost;
+    system->num_invalid += view_system_.num_invalid;
+    if (derivatives) columns.AddSums(view_system_, system);
+  }
 }
 
 void FrameEvaluator::EvaluateRows(const FrameLayout& layout, const FrameData& data, const FrameState& state,
-                                  const VectorXd& betas, double log_focal, Mode mode, FrameRows* rows) {
+                                  const SharedValues& shared, Mode mode, FrameRows* rows) {
   const bool derivatives = mode != Mode::kNorms;
-  Begin(layout, data, state, betas, log_focal, mode, nullptr);
+  Begin(layout, data, state, shared, mode, nullptr);
   rows->groups.clear();
   rows->term_of_group.clear();
   rows->is_finite = true;
   int num_rows = 0;
-  for (const auto& term : data.terms) {
+  data.ForEachTerm([&](const FrameTerm* term, const std::string&) {
     if (!term->is_empty()) num_rows += term->is_compressed() ? layout.num_columns + 2 : term->num_rows();
-  }
+  });
   if (rows->J.cols() != layout.num_columns || rows->J.rows() < num_rows) {
     rows->J.resize(num_rows, layout.num_columns);
     rows->r.resize(num_rows);
@@ -91,6 +124,46 @@ void FrameEvaluator::EvaluateRows(const FrameLayout& layout, const FrameData& da
     rows->is_finite = rows->is_finite && std::isfinite(sums_.cost());
     ++index;
   }
+  for (const ViewTerms& view : data.views) {
+    const ViewColumns columns = BeginView(layout, view, state, shared, mode, nullptr);
+    AppendRowsOfView(index, view, columns, mode, rows);
+    index += static_cast<int>(view.terms.size());
+  }
+}
+
+void FrameEvaluator::AppendRowsOfView(int first_term, const ViewTerms& view, const ViewColumns& columns, Mode mode,
+                                      FrameRows* rows) {
+  const bool derivatives = mode != Mode::kNorms;
+  const FrameLayout& local = view_sums_.layout();
+  int index = first_term - 1;
+  for (const auto& term : view.terms) {
+    ++index;
+    if (term->is_empty()) continue;
+    const int first = NextRow(*rows);
+    view_sums_.SetMode(!term->is_compressed() ? mode : derivatives ? Mode::kSums : Mode::kCost);
+    view_sums_.ReserveRows(term->num_rows());
+    term->Add(&view_sums_);
+    rows->is_finite = rows->is_finite && std::isfinite(view_sums_.cost());
+    std::vector<ResidualGroup> groups = view_sums_.groups();
+    RowMatrixXd J;
+    if (term->is_compressed()) {
+      view_sums_.Finish(&view_system_);
+      groups.assign(1, AllBlocks(local));
+      J.resize(groups[0].num_rows, local.num_columns);
+      CompressedRows(view_system_, derivatives, J, rows->r.segment(first, J.rows()));
+    } else {
+      const int count = view_sums_.num_rows();
+      rows->r.segment(first, count) = view_sums_.residual_values().head(count);
+      if (derivatives) J = view_sums_.rows().topLeftCorner(count, local.num_columns);
+    }
+    if (derivatives) columns.TakeRows(J, rows->J.middleRows(first, J.rows()));
+    for (ResidualGroup& group : groups) {
+      group.first_row += first;
+      group.blocks = columns.Blocks(group.blocks);
+      rows->groups.push_back(std::move(group));
+      rows->term_of_group.push_back(index);
+    }
+  }
 }
 
 void FrameEvaluator::AppendGroups(int term, const FrameLayout& layout, const FrameData& data, FrameRows* rows) {
@@ -113,10 +186,8 @@ void FrameEvaluator::AppendCompressed(int term, const FrameLayout& layout, const
                                       FrameRows* rows) {
   sums_.Finish(&system_);
   if (data.camera_from_scene != nullptr && derivatives) TakeToScene(layout, *data.camera_from_scene, &system_);
-  ResidualGroup group;
+  ResidualGroup group = AllBlocks(layout);
   group.first_row = NextRow(*rows);
-  group.num_rows = layout.num_columns + 2;
-  for (int block = 0; block < layout.num_blocks(); ++block) group.blocks.push_back(block);
   CompressedRows(system_, derivatives, rows->J.middleRows(group.first_row, group.num_rows),
                  rows->r.segment(group.first_row, group.num_rows));
   rows->groups.push_back(std::move(group));

@@ -3,6 +3,8 @@
 /// the sum over the terms of the frame's list (TermList), each of which is explained in its own header; the built-in
 /// ones are listed in term_kinds.h.
 ///
+/// Other cameras that show the same person add their terms likewise (view_terms.h).
+///
 /// For a moving camera the state is in the scene. It is transformed to the camera frame for the terms, and their sums
 /// are transformed back to the scene (moving_camera.h).
 ///
@@ -12,12 +14,14 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "geometry/scene/camera.h"
 #include "tracking/problem/frame_accumulator.h"
 #include "tracking/problem/frame_layout.h"
 #include "tracking/problem/frame_term.h"
+#include "tracking/problem/view_terms.h"
 
 namespace bodyloom {
 
@@ -29,6 +33,7 @@ struct FrameGround {
   double measured_up_sigma_rad = 0;                         ///< its σ per direction across it
   /// σ of up, per direction across it, and of level_m for this vertical.
   double up_sigma_rad = 0, level_sigma_m = 0;
+  double depth_sigma_m = 0.12;  ///< of what touches it, along the ray of the first view
   /// Variance of the plane's height above x by what touched it: x · P x − 2 q · x + s. Zero where it is given.
   Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
@@ -45,6 +50,7 @@ struct FrameData {
   const CameraPose* camera_from_scene = nullptr;
   FrameGround* ground = nullptr;  ///< of the frame's shot, as last estimated (terms/ground_contact); null: not known
   TermList terms;
+  std::vector<ViewTerms> views;  ///< terms of the other views that show this frame
 
   /// As of TermList.
   template <typename Term>
@@ -55,15 +61,24 @@ struct FrameData {
   [[nodiscard]] const Term& Get() const {
     return terms.Get<Term>();
   }
+  /// Calls f(term, name) for the terms of the list, then for those of the other views, whose names end with
+  /// ", view 2" and so on.
+  template <typename Function>
+  void ForEachTerm(const Function& f) const {
+    for (const auto& term : terms) f(term.get(), term->name());
+    for (const ViewTerms& view : views) {
+      for (const auto& term : view.terms) f(term.get(), term->name() + ", view " + std::to_string(view.view + 2));
+    }
+  }
 };
 
-/// A frame's residuals one by one: the groups of rows of its terms, in the order of the list. A compressed term
-/// (FrameTerm::is_compressed) is one group of CompressedRows().
+/// A frame's residuals one by one: the groups of rows of its terms, in the order of FrameData::ForEachTerm(). A
+/// compressed term (FrameTerm::is_compressed) is one group of CompressedRows().
 struct FrameRows {
   RowMatrixXd J;  ///< by the columns of the layout
   Eigen::VectorXd r;
   std::vector<ResidualGroup> groups;
-  std::vector<int> term_of_group;  ///< index into the frame's list
+  std::vector<int> term_of_group;  ///< index in that order
   bool is_finite = false;
 };
 
@@ -82,24 +97,30 @@ class FrameEvaluator {
   /// represent all; 0: all. Frames with rendered UV always use all.
   void LimitPoints(int max_points) { sums_.max_points = max_points; }
   /// Evaluates the sums; only the cost when `derivatives` is false. If given, `residuals` is appended to and
-  /// `term_costs` is filled with the cost of each term of the list.
-  void Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state, const Eigen::VectorXd& betas,
-                double log_focal, bool derivatives, FrameSystem* system, FrameResiduals* residuals = nullptr,
+  /// `term_costs` is filled with the cost of each term, in the order of FrameData::ForEachTerm().
+  void Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state, const SharedValues& shared,
+                bool derivatives, FrameSystem* system, FrameResiduals* residuals = nullptr,
                 std::vector<double>* term_costs = nullptr);
   /// Evaluates the residuals one by one. `mode`: kNorms, kRows, or kStructure, which fills ResidualGroup::blocks.
   /// Number and structure of the groups do not depend on the state.
   void EvaluateRows(const FrameLayout& layout, const FrameData& data, const FrameState& state,
-                    const Eigen::VectorXd& betas, double log_focal, FrameAccumulator::Mode mode, FrameRows* rows);
+                    const SharedValues& shared, FrameAccumulator::Mode mode, FrameRows* rows);
 
  private:
-  void Begin(const FrameLayout& layout, const FrameData& data, const FrameState& state, const Eigen::VectorXd& betas,
-             double log_focal, FrameAccumulator::Mode mode, FrameResiduals* residuals);
+  void Begin(const FrameLayout& layout, const FrameData& data, const FrameState& state, const SharedValues& shared,
+             FrameAccumulator::Mode mode, FrameResiduals* residuals);
+  /// Begins a view of the frame and returns the derivatives of its columns.
+  ViewColumns BeginView(const FrameLayout& layout, const ViewTerms& view, const FrameState& state,
+                        const SharedValues& shared, FrameAccumulator::Mode mode, FrameResiduals* residuals);
   void AppendCompressed(int term, const FrameLayout& layout, const FrameData& data, bool derivatives, FrameRows* rows);
   void AppendGroups(int term, const FrameLayout& layout, const FrameData& data, FrameRows* rows);
+  void AppendRowsOfView(int first_term, const ViewTerms& view, const ViewColumns& columns, FrameAccumulator::Mode mode,
+                        FrameRows* rows);
 
-  FrameAccumulator sums_;
+  FrameAccumulator sums_, view_sums_;
   FrameState in_camera_;  ///< of a camera that moves
-  FrameSystem system_;
+  FrameState in_view_;
+  FrameSystem system_, view_system_;
 };
 
 /// Computes upper triangular R with RᵀR = H (lower triangle of H is read) and y with Rᵀy = g, for positive

@@ -115,6 +115,39 @@ void CheckCameraPath(const TrackSequenceInput& input, const TrackSequenceOptions
                  "track: weak perspective has no place in a scene; give a camera that moves a focal length");
 }
 
+void CheckViews(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
+  BODYLOOM_CHECK(options.camera_knowledge != CameraKnowledge::kWeak || input.views->empty(),
+                 "track: weak perspective has no place in a scene; give each of several views a focal length");
+  for (size_t v = 0; v < input.views->size(); ++v) {
+    const ViewInput& view = (*input.views)[v];
+    const std::string which = "view " + std::to_string(v + 2);
+    BODYLOOM_CHECK(view.keypoints != nullptr && view.keypoints->num_frames() > 0, "track: ", which,
+                   " has no 2D joints");
+    CheckTimes(view.keypoints, ("2D joints of " + which).c_str());
+    BODYLOOM_CHECK(view.knowledge != CameraKnowledge::kWeak, "track: ", which,
+                   " has weak perspective, which has no place in a scene; give it a focal length");
+    BODYLOOM_CHECK(view.camera.width > 0 || view.keypoints->image_width > 0, "track: the image size of ", which,
+                   " is not known");
+    if (view.knowledge == CameraKnowledge::kKnown) CheckCamera(view.camera);
+    BODYLOOM_CHECK(view.camera_from_scene.camera_from_world_translation.allFinite() &&
+                       IsRotation(view.camera_from_scene.camera_from_world_rotation, 1e-6),
+                   "track: the pose of ", which, " is no rotation and translation");
+    BODYLOOM_CHECK(std::isfinite(view.offset_s) && std::isfinite(view.rate) && view.offset_sigma_s > 0,
+                   "track: the clock of ", which, " is ", view.offset_s, " s off within ", view.offset_sigma_s,
+                   ", expected seconds");
+  }
+}
+
+void CheckStart(const TrackSequenceInput& input, int num_frames) {
+  const std::vector<FrameState>& states = input.start->states;
+  BODYLOOM_CHECK(static_cast<int>(states.size()) == num_frames, "track: the start has ", states.size(),
+                 " poses, the detections ", num_frames, " frames");
+  for (size_t t = 0; t < states.size(); ++t) {
+    BODYLOOM_CHECK(static_cast<int>(states[t].rotations.size()) == input.body->num_joints() && IsFinite(states[t]),
+                   "track: pose ", t, " of the start is no pose of the body");
+  }
+}
+
 bool IsUsable(const DenseKeypoint& point, float reach) {
   return IsWithin(point.pixel.x(), reach) && IsWithin(point.pixel.y(), reach) && point.sigma_px > 0 &&
          std::isfinite(point.sigma_px) && (point.barycentric.array() >= -1).all() &&
@@ -206,6 +239,8 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
   }
   if (input.dense != nullptr) CheckDense(input);
   if (input.part_labels != nullptr) CheckPartLabels(input, options);
+  if (input.views != nullptr) CheckViews(input, options);
+  if (input.start != nullptr) CheckStart(input, extent.frames);
   if (input.camera_from_scene != nullptr) CheckCameraPath(input, options, extent.frames);
   if (options.camera_knowledge == CameraKnowledge::kKnown) {
     BODYLOOM_CHECK(extent.width == 0 || input.camera.width == 0 ||

@@ -41,6 +41,30 @@ void ShapePriorRows(const SequenceProblem& problem, RowMatrixXd* A, VectorXd* b)
   (*b)[B] = (mean_height - height) / problem.shape_prior.height_sigma_m;
 }
 
+std::vector<SharedPrior> SharedPriors(const SequenceProblem& problem, const SharedValues& values) {
+  std::vector<SharedPrior> priors;
+  const FrameLayout& layout = problem.layout;
+  if (layout.focal_column >= 0) {
+    priors.push_back({"focal length prior", layout.focal_column, values.log_focal, problem.log_focal_prior,
+                      problem.log_focal_sigma});
+  }
+  for (size_t v = 0; v < layout.views.size(); ++v) {
+    const ViewLayout& view = layout.views[v];
+    const ViewState& state = values.views[v];
+    const std::string which = ", view " + std::to_string(v + 2);
+    if (view.focal_column >= 0) {
+      priors.push_back({"focal length prior" + which, view.focal_column, state.log_focal, view.log_focal_prior,
+                        view.log_focal_sigma});
+    }
+    if (view.clock_column >= 0) {
+      const int column = view.clock_column;
+      priors.push_back({"clock prior" + which, column, state.offset_s, view.offset_prior_s, view.offset_sigma_s});
+      priors.push_back({"clock prior" + which, column + 1, state.rate, view.rate_prior, view.rate_sigma});
+    }
+  }
+  return priors;
+}
+
 const Smoothness& SmoothnessOf(const SequenceProblem& problem, int shot) {
   return problem.smoothness[problem.smoothness.size() == 1 ? 0 : shot];
 }
@@ -78,8 +102,7 @@ std::array<double, 3> RootVelocitySigma(const SequenceProblem& problem) {
 SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<int>& frames) {
   SequenceProblem coarse;
   coarse.layout = problem.layout;
-  coarse.betas = problem.betas;
-  coarse.log_focal = problem.log_focal;
+  static_cast<SharedValues&>(coarse) = problem;
   coarse.log_focal_prior = problem.log_focal_prior;
   coarse.log_focal_sigma = problem.log_focal_sigma;
   coarse.smoothness = problem.smoothness;
@@ -109,8 +132,7 @@ SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<i
 }
 
 void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames, SequenceProblem* problem) {
-  problem->betas = coarse.betas;
-  problem->log_focal = coarse.log_focal;
+  static_cast<SharedValues&>(*problem) = coarse;
   for (size_t i = 0; i < frames.size(); ++i) problem->states[frames[i]] = coarse.states[i];
   for (size_t i = 0; i + 1 < frames.size(); ++i) {
     if (coarse.cut_before[i + 1]) continue;

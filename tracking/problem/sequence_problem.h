@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "tracking/problem/frame_cost.h"
@@ -34,15 +35,14 @@ struct ShapePrior {
   double height_sigma_m = 0.005;
 };
 
-struct SequenceProblem {
+/// The values are those at which a solve starts.
+struct SequenceProblem : SharedValues {
   FrameLayout layout;
   std::vector<FrameData> frames;
   std::vector<FrameCoupling> couplings;  ///< users' cost functions on several frames
   std::vector<FrameState> states;
   std::vector<double> timestamps;  ///< seconds
   std::vector<char> cut_before;    ///< true where frame t does not continue frame t−1
-  Eigen::VectorXd betas;
-  double log_focal = 0;
   double log_focal_prior = 0, log_focal_sigma = FocalPrior().log_sigma;
   std::vector<Smoothness> smoothness = {Smoothness()};  ///< smoothness of each shot, or one for all of them
   double velocity_weight = 0;  ///< λ_t of velocities (residuals/acceleration_cost.h); 0: none. Not for a moving window
@@ -77,6 +77,15 @@ std::vector<double> JointLevers(const BodyModel& model);
 
 /// Stature h(β) = h0 + g·β: highest minus lowest vertex, linearised at the mean shape.
 double StatureOfMeanShape(const BodyModel& model, int num_betas, Eigen::VectorXd* gradient);
+
+/// Gaussian prior on a shared unknown: ½ ((value − mean) / σ)².
+struct SharedPrior {
+  std::string term;  ///< its name in the table of costs
+  int column = 0;    ///< of the layout
+  double value = 0, mean = 0, sigma = 1;
+};
+/// The priors on focal lengths and clocks that are not known, at these values.
+std::vector<SharedPrior> SharedPriors(const SequenceProblem& problem, const SharedValues& values);
 
 /// Rows of the shape prior and of the stature prior: residual = A β + b.
 void ShapePriorRows(const SequenceProblem& problem, RowMatrixXd* A, Eigen::VectorXd* b);

@@ -12,12 +12,38 @@
 #include "geometry/scene/pose_prior.h"
 #include "geometry/scene/track.h"
 #include "tracking/problem/camera_knowledge.h"
+#include "tracking/problem/frame_layout.h"
 #include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 
 struct LiftedFrame;
 struct PictureVertical;
+
+/// Another camera that shows the same person (problem/view_terms.h), with what is known of it. What is not known is
+/// estimated with the track, from the values here.
+struct ViewInput {
+  const KeypointSequence* keypoints = nullptr;                 ///< required; with timestamps of the view's own clock
+  CameraKnowledge knowledge = CameraKnowledge::kUnknownFocal;  ///< not kWeak
+  /// kKnown: all of it; else width and height (0: taken from the observations), and the focal length to start from (0:
+  /// that of the prior).
+  Camera camera = {.fx = 0, .fy = 0};
+  std::optional<FocalPrior> focal_prior;  ///< without it FocalPrior::ForImage()
+  CameraPose camera_from_scene;           ///< from the first view's camera frame; with a moving camera, from the scene
+  bool pose_known = false;
+  /// The view's clock shows t + offset_s + rate (t − middle) when the first view's shows t; middle: of the first view's
+  /// clip.
+  double offset_s = 0, rate = 0;
+  double offset_sigma_s = 0.1;  ///< of the offset, where it is not known
+  bool clock_known = false;
+};
+
+/// A pose of every frame to start from, which does not enter the cost.
+struct TrackStart {
+  std::vector<FrameState> states;  ///< T, in the camera frame of each frame
+  Eigen::VectorXd betas;           ///< as many as the body has, or fewer
+  double focal_px = 0;             ///< of a focal length that is not known; 0: that of the prior
+};
 
 /// Observations, models and knowledge given to the tracker. Pointers are borrowed and may be null unless noted.
 struct TrackSequenceInput {
@@ -27,8 +53,10 @@ struct TrackSequenceInput {
   /// Part labels or a mask of each frame. They refine a start but cannot give one: without 2D joints and dense
   /// keypoints an initialiser is required, and weak perspective is not available.
   const PartLabelSequence* part_labels = nullptr;
-  const Motion* initialiser = nullptr;    ///< camera-frame poses of another system; NaN: none (L_d of paper A)
-  const PosePrior* prior = nullptr;       ///< learned pose prior; without it only joint limits apply
+  const std::vector<ViewInput>* views = nullptr;  ///< other cameras; not with weak perspective nor the live tracker
+  const TrackStart* start = nullptr;              ///< from several views, as a rule (rig/track_views.h)
+  const Motion* initialiser = nullptr;            ///< camera-frame poses of another system; NaN: none (L_d of paper A)
+  const PosePrior* prior = nullptr;               ///< learned pose prior; without it only joint limits apply
   const LifterWeights* lifter = nullptr;  ///< gives the start from 2D joints, and L_d; without it: joint hypotheses
   /// 3D landmarks of every frame, of another lifter or a benchmark, in place of the predictions of `lifter`
   /// (lifter/lift_keypoints.h).

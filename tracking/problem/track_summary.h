@@ -93,6 +93,18 @@ struct CameraPathSummary {
   std::string why;         ///< the evidence of an estimate, or the reason why there is none
 };
 
+/// Another camera as it was estimated (ViewInput). Standard deviations are 0 where the value was given and NaN where
+/// they are not known.
+struct ViewSummary {
+  Camera camera;  ///< intrinsics
+  CameraPose camera_from_scene;
+  double offset_s = 0, rate = 0;
+  double rotation_sigma_rad = 0, translation_sigma_m = 0;  ///< one axis
+  double focal_log_sigma = 0, offset_sigma_s = 0, rate_sigma = 0;
+  int frames = 0;  ///< of the first view's clip that it shows, too
+  double reprojection_median_px = 0;
+};
+
 /// Longest time from one sight of a person to the next that smoothness can bridge, seconds. In holes of 1.5 s
 /// root_sigma grows to 0.5 m for a slow dancer and 1 m for a fast one, and limbs are as wrong as those of another pose
 /// (docs/lab/joint_sigma.md).
@@ -125,8 +137,9 @@ struct TrackSequenceSummary {
   int num_observations = 0, num_parameters = 0;
   GroundSummary ground;
   CameraPathSummary camera_path;
-  int num_swaps_repaired = 0;  ///< left–right pairs found exchanged in the detections
-  int lost_in_holes = 0;       ///< of the lost frames those between two sights of one shot
+  std::vector<ViewSummary> views;  ///< of TrackSequenceInput::views
+  int num_swaps_repaired = 0;      ///< left–right pairs found exchanged in the detections
+  int lost_in_holes = 0;           ///< of the lost frames those between two sights of one shot
   [[nodiscard]] bool IsUsable() const { return status != SolveStatus::kFailure; }
   /// "120 tracked, 97 lost (90 in holes of more than 1.5 s)"; empty without frames.
   [[nodiscard]] std::string FramesReport() const;

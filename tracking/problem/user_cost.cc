@@ -178,7 +178,8 @@ void EvaluateUserCost(const UserCost& cost, const FrameLayout& layout, std::span
                       const VectorXd& betas, double log_focal, bool derivatives, UserResidual* result) {
   const CompiledInputs& compiled = *cost.inputs;
   const bool has_focal = layout.focal_column >= 0;
-  const int columns = static_cast<int>(states.size()) * layout.num_frame_columns() + layout.num_betas + has_focal;
+  const int columns =
+      static_cast<int>(states.size()) * layout.num_frame_columns() + layout.num_columns - layout.beta_column;
   int size = 0;
   for (const CompiledInputs::Input& input : compiled.inputs) size += input.size;
   VectorXd values(size);

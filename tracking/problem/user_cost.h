@@ -51,7 +51,7 @@ struct UserCost {
 struct UserResidual {
   bool valid = false;
   Eigen::VectorXd r;
-  RowMatrixXd J;            ///< columns: each frame's num_frame_columns(), betas, log focal length (if estimated)
+  RowMatrixXd J;            ///< columns: each frame's num_frame_columns(), then the shared ones of the layout
   std::vector<char> reads;  ///< by unknown block in the same order: the residual may depend on it at some state
 };
 

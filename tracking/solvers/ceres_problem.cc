@@ -33,6 +33,12 @@ struct CeresProblem::Memory {
   std::vector<double> rotations, translations;  ///< (last − first) × A × 3, × 3
   VectorXd betas;
   double log_focal = 0;
+  struct View {
+    Vector3d rotation, translation;  ///< axis-angle
+    double log_focal = 0;
+    std::array<double, 2> clock{};
+  };
+  std::vector<View> views;
   FrameBatch batch;
   std::map<std::tuple<int, double, double, ceres::LossFunction*>, std::unique_ptr<ceres::LossFunctionWrapper>> losses;
   std::vector<std::string> terms;
@@ -43,6 +49,8 @@ struct CeresProblem::Memory {
   Memory(const SequenceProblem& given, const CeresProblemOptions& options);
   double* Rotation(int t, size_t a) { return &rotations[3 * ((t - first) * num_active + a)]; }
   double* Translation(int t) { return &translations[3 * static_cast<size_t>(t - first)]; }
+  /// The blocks of the views' unknowns, in the layout's order.
+  std::vector<double*> ViewBlocks();
   int Term(const std::string& name);
   ceres::LossFunction* Loss(int term, double kernel, double weight, ceres::LossFunction* given);
   void Wrap(int term, double kernel, double weight, ceres::LossFunction* given, ceres::LossFunctionWrapper* wrapper);
@@ -69,6 +77,13 @@ CeresProblem::Memory::Memory(const SequenceProblem& given, const CeresProblemOpt
     }
     translations.insert(translations.end(), state.translation.data(), state.translation.data() + 3);
   }
+  for (const ViewState& view : given.views) {
+    const CameraPose& pose = view.camera_from_scene;
+    views.push_back({AxisAngleFromRotation(pose.camera_from_world_rotation),
+                     pose.camera_from_world_translation,
+                     view.log_focal,
+                     {view.offset_s, view.rate}});
+  }
   ceres::Problem::Options problem_options;
   problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -76,6 +91,20 @@ CeresProblem::Memory::Memory(const SequenceProblem& given, const CeresProblemOpt
   problem_options.enable_fast_removal = options.enable_fast_removal;
   problem_options.disable_all_safety_checks = true;
   problem = std::make_unique<ceres::Problem>(problem_options);
+}
+
+std::vector<double*> CeresProblem::Memory::ViewBlocks() {
+  std::vector<double*> blocks;
+  for (size_t v = 0; v < views.size(); ++v) {
+    const ViewLayout& layout = source.layout.views[v];
+    if (layout.pose_column >= 0) {
+      blocks.push_back(views[v].rotation.data());
+      blocks.push_back(views[v].translation.data());
+    }
+    if (layout.focal_column >= 0) blocks.push_back(&views[v].log_focal);
+    if (layout.clock_column >= 0) blocks.push_back(views[v].clock.data());
+  }
+  return blocks;
 }
 
 int CeresProblem::Memory::Term(const std::string& name) {
@@ -135,6 +164,15 @@ class CeresProblem::Builder {
     }
     if (layout_.num_betas > 0) m_.problem->AddParameterBlock(m_.betas.data(), layout_.num_betas);
     if (layout_.focal_column >= 0) m_.problem->AddParameterBlock(&m_.log_focal, 1);
+    for (size_t v = 0; v < m_.views.size(); ++v) {
+      const ViewLayout& view = layout_.views[v];
+      if (view.pose_column >= 0) {
+        m_.problem->AddParameterBlock(m_.views[v].rotation.data(), 3, &m_.manifold);
+        m_.problem->AddParameterBlock(m_.views[v].translation.data(), 3);
+      }
+      if (view.focal_column >= 0) m_.problem->AddParameterBlock(&m_.views[v].log_focal, 1);
+      if (view.clock_column >= 0) m_.problem->AddParameterBlock(m_.views[v].clock.data(), 2);
+    }
   }
 
   void Add(int term, int frame, ceres::CostFunction* cost, ceres::LossFunction* loss,
@@ -144,16 +182,21 @@ class CeresProblem::Builder {
 
   void AddFrames() {
     std::vector<double*> all, some;
+    const std::vector<double*> of_views = m_.ViewBlocks();
     for (int t = m_.begin; t < m_.end; ++t) {
       all.clear();
       for (size_t a = 0; a < m_.num_active; ++a) all.push_back(m_.Rotation(t, a));
       all.push_back(m_.Translation(t));
       if (layout_.num_betas > 0) all.push_back(m_.betas.data());
       if (layout_.focal_column >= 0) all.push_back(&m_.log_focal);
-      std::vector<FrameBatch::Entry> entries = m_.batch.Add(layout_, source_.frames[t], source_.states[t], all);
+      all.insert(all.end(), of_views.begin(), of_views.end());
+      std::vector<FrameBatch::Entry> entries =
+          m_.batch.Add(layout_, source_.frames[t], source_.states[t], source_, all);
       std::vector<int> term_of_list;
-      for (const auto& term : source_.frames[t].terms) {
-        if (!m_.compress) term_of_list.push_back(term->is_empty() ? -1 : m_.Term(term->name()));
+      if (!m_.compress) {
+        source_.frames[t].ForEachTerm([&](const FrameTerm* term, const std::string& name) {
+          term_of_list.push_back(term->is_empty() ? -1 : m_.Term(name));
+        });
       }
       for (FrameBatch::Entry& entry : entries) {
         some.clear();
@@ -218,12 +261,30 @@ class CeresProblem::Builder {
       Add(prior, -1, new LinearCost(A.topRows(B), b.head(B)), m_.Loss(prior, 0, 1, nullptr), {m_.betas.data()});
       Add(stature, -1, new LinearCost(A.bottomRows(1), b.tail(1)), m_.Loss(stature, 0, 1, nullptr), {m_.betas.data()});
     }
-    if (layout_.focal_column < 0) return;
-    RowMatrixXd A(1, 1);
-    A(0, 0) = 1 / source_.log_focal_sigma;
-    const int term = m_.Term("focal length prior");
-    Add(term, -1, new LinearCost(A, VectorXd::Constant(1, -source_.log_focal_prior / source_.log_focal_sigma)),
-        m_.Loss(term, 0, 1, nullptr), {&m_.log_focal});
+    // One residual block a parameter block: a clock has the priors of its two columns.
+    const std::vector<double*> of_views = m_.ViewBlocks();
+    const std::vector<SharedPrior> priors = SharedPriors(source_, source_);
+    for (size_t i = 0; i < priors.size();) {
+      const int block = BlockOf(priors[i].column), columns = layout_.NumColumns(block);
+      RowMatrixXd A = RowMatrixXd::Zero(columns, columns);
+      VectorXd b(columns);
+      const int term = m_.Term(priors[i].term);
+      for (int k = 0; k < columns; ++k, ++i) {
+        A(k, k) = 1 / priors[i].sigma;
+        b[k] = -priors[i].mean / priors[i].sigma;
+      }
+      double* parameter = block == layout_.FocalBlock()
+                              ? &m_.log_focal
+                              : of_views[block - (layout_.num_blocks() - static_cast<int>(of_views.size()))];
+      Add(term, -1, new LinearCost(A, b), m_.Loss(term, 0, 1, nullptr), {parameter});
+    }
+  }
+
+  /// The block of a shared column.
+  [[nodiscard]] int BlockOf(int column) const {
+    int block = layout_.num_blocks() - 1;
+    while (layout_.FirstColumn(block) > column) --block;
+    return block;
   }
 
   void AddCouplings() {
@@ -275,9 +336,18 @@ double* CeresProblem::betas() { return memory_->betas.size() > 0 ? memory_->beta
 
 double* CeresProblem::log_focal() { return memory_->source.layout.focal_column >= 0 ? &memory_->log_focal : nullptr; }
 
+std::vector<double*> CeresProblem::view_blocks() { return memory_->ViewBlocks(); }
+
 std::string CeresProblem::NameOf(const double* block) const {
   const Memory& m = *memory_;
   if (block == &m.log_focal) return "logarithm of the focal length";
+  for (size_t v = 0; v < m.views.size(); ++v) {
+    const std::string which = Concatenate(" of view ", v + 2);
+    if (block == m.views[v].rotation.data()) return "rotation" + which;
+    if (block == m.views[v].translation.data()) return "translation" + which;
+    if (block == &m.views[v].log_focal) return "logarithm of the focal length" + which;
+    if (block == m.views[v].clock.data()) return "clock" + which;
+  }
   if (block == m.betas.data()) return "shape";
   const auto within = [&](const std::vector<double>& values) {
     return block >= values.data() && block < values.data() + values.size();
@@ -334,6 +404,13 @@ void CeresProblem::CopyTo(SequenceProblem* problem) const {
   }
   problem->betas = m.betas;
   problem->log_focal = m.log_focal;
+  for (size_t v = 0; v < m.views.size(); ++v) {
+    ViewState& view = problem->views[v];
+    view.camera_from_scene = {RotationFromAxisAngle(m.views[v].rotation), m.views[v].translation};
+    view.log_focal = m.views[v].log_focal;
+    view.offset_s = m.views[v].clock[0];
+    view.rate = m.views[v].clock[1];
+  }
 }
 
 }  // namespace bodyloom

@@ -3,13 +3,14 @@
 /// held constant, reweighted, extended and solved with all options of Ceres.
 ///
 /// Parameter blocks: for each frame the axis-angle of each estimated joint (RotationManifold; derivatives are by right
-/// increments) and the translation; for all frames the shape and the logarithm of the focal length, where they are
+/// increments) and the translation; for all frames the shape and the logarithm of the focal length, and for each other
+/// view its pose (axis-angle, translation), logarithm of the focal length and clock (offset, rate), where they are
 /// estimated. Residual blocks, by the name of their term:
 ///   terms of a frame      one block an observation (a 2D joint, a landmark of the lifter, a joint's limits …) with its
 ///                         own ceres::LossFunction; terms of thousands of observations are compressed to a few blocks a
 ///                         frame (FrameRows, frame_cost.h)
 ///   "smoothness"          a joint or the translation in three frames; "velocity" in two
-///   "shape prior", "stature", "focal length prior"
+///   "shape prior", "stature", "focal length prior", "clock prior, view 2"
 ///   a user's terms        unchanged, for any number of frames
 /// All blocks of frames are evaluated together for each new point, on `num_threads` threads, while Ceres itself runs on
 /// one (its own threads sum gradients in the order in which they finish): same bytes for any number of threads.
@@ -53,6 +54,8 @@ class CeresProblem {
   [[nodiscard]] double* translation(int t);
   [[nodiscard]] double* betas();
   [[nodiscard]] double* log_focal();
+  /// Those of the other views' unknowns: rotation, translation, focal length and clock of the first, and so on.
+  [[nodiscard]] std::vector<double*> view_blocks();
   /// "rotation of l_knee, frame 12"; empty for a pointer that is no block of this problem.
   [[nodiscard]] std::string NameOf(const double* block) const;
 
@@ -70,7 +73,7 @@ class CeresProblem {
   /// of terms(), or a weight that is negative or not finite.
   void SetWeight(const std::string& term, double weight);
 
-  /// Copies the parameters' values to the problem's states (of the frames begin ≤ t < end), betas and focal length.
+  /// Copies the parameters' values to the problem's states (of the frames begin ≤ t < end) and shared values.
   void CopyTo(SequenceProblem* problem) const;
 
  private:

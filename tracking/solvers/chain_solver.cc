@@ -238,14 +238,13 @@ SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
   Stopwatch watch;
   ChainProblem chain(*problem, options.shape_constant, options.focal_constant, options.num_threads);
   ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
-  ChainPoint x{problem->states, problem->betas, problem->log_focal};
+  ChainPoint x(problem->states, *problem);
   const bool thin =
       options.chain.early_dense > 0 && MaxDenseOfFrame(*problem) > 2 * static_cast<size_t>(options.chain.early_dense);
   SolveReport report = DescendChain(&chain, &factor, &x, options, thin);
   if (report.status != SolveStatus::kFailure) {
     problem->states = std::move(x.states);
-    problem->betas = x.betas;
-    problem->log_focal = x.log_focal;
+    static_cast<SharedValues&>(*problem) = std::move(x);
   }
   report.seconds = watch.seconds();
   return report;

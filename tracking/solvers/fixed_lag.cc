@@ -22,7 +22,7 @@ FixedLag::FixedLag(SequenceProblem clip, int max_frames, int num_threads)
 }
 
 void FixedLag::DropFirst() {
-  const ChainPoint x{problem_.states, problem_.betas, problem_.log_focal};
+  const ChainPoint x(problem_.states, problem_);
   ChainPrior next;
   // If the first frame cannot be eliminated its information is dropped; the next frames are determined without it.
   if (!std::isfinite(chain_.Linearise(x)) || !chain_.Marginalise(x, &next)) next = ChainPrior();
@@ -70,7 +70,7 @@ void FixedLag::Cut(int t) {
 
 bool FixedLag::VisitCovariance(int begin, int end, const std::function<void(int, const Eigen::MatrixXd&)>& visit) {
   // The next solve begins by linearising here, too.
-  return std::isfinite(chain_.Linearise({problem_.states, problem_.betas, problem_.log_focal})) &&
+  return std::isfinite(chain_.Linearise(ChainPoint(problem_.states, problem_))) &&
          bodyloom::VisitCovariance(&chain_, &factor_, begin, end, num_threads_, visit);
 }
 
@@ -81,7 +81,7 @@ SolveReport FixedLag::Solve(int max_iterations, double reuse_share, double funct
   options.num_threads = num_threads_;
   options.chain.reuse_linearisation = reuse_share;
   options.chain.reuse_to_the_end = true;
-  ChainPoint x{std::move(problem_.states), problem_.betas, problem_.log_focal};
+  ChainPoint x(std::move(problem_.states), problem_);
   SolveReport report = DescendChain(&chain_, &factor_, &x, options, false);
   problem_.states = std::move(x.states);
   problem_.betas = x.betas;

@@ -74,6 +74,7 @@ SolveReport SolveFrames(int begin, int end, bool shared_constant, const SolveOpt
   };
   hold(shared_constant || options.shape_constant, ceres_problem.betas());
   hold(shared_constant || options.focal_constant, ceres_problem.log_focal());
+  for (double* block : ceres_problem.view_blocks()) hold(shared_constant, block);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
@@ -113,7 +114,7 @@ double CostOf(const SequenceProblem& problem, int num_threads) {
 
 /// Solves overlapping windows one after the other, each from the states that the one before has left. The frames next
 /// to a window are held constant and coupled to it by smoothness, so there is no seam, and every window lowers the cost
-/// of the whole. Shape and focal length are held.
+/// of the whole. Shape, focal length and the other views are held.
 SolveReport SolveInWindows(const SolveOptions& options, SequenceProblem* problem) {
   const int T = static_cast<int>(problem->states.size()), size = options.max_frames_at_once;
   SolveReport report;

@@ -34,9 +34,8 @@ class CostTable {
     return added;
   }
   void AddShared(const std::string& term, double cost) {
-    TermCosts& added = table_.emplace_back();
-    added.term = term;
-    added.cost = cost;
+    if (table_.empty() || table_.back().term != term) table_.emplace_back().term = term;
+    table_.back().cost += cost;
   }
 
   void AddFrames(int num_threads, FrameResiduals* residuals) {
@@ -45,15 +44,15 @@ class CostTable {
     ParallelFor(static_cast<int>(T_), num_threads, [&](int t) {
       thread_local FrameEvaluator evaluator;
       FrameSystem system;
-      evaluator.Evaluate(problem_.layout, problem_.frames[t], problem_.states[t], problem_.betas, problem_.log_focal,
-                         false, &system, residuals == nullptr ? nullptr : &of_frame[t], &costs[t]);
+      evaluator.Evaluate(problem_.layout, problem_.frames[t], problem_.states[t], problem_, false, &system,
+                         residuals == nullptr ? nullptr : &of_frame[t], &costs[t]);
     });
     for (size_t t = 0; t < T_; ++t) {
       size_t i = 0;
-      for (const auto& term : problem_.frames[t].terms) {
+      problem_.frames[t].ForEachTerm([&](const FrameTerm* term, const std::string& name) {
         const double cost = costs[t][i++];
-        if (!term->is_empty()) Of(term->name()).of_frame[static_cast<Eigen::Index>(t)] += cost;
-      }
+        if (!term->is_empty()) Of(name).of_frame[static_cast<Eigen::Index>(t)] += cost;
+      });
     }
     for (const FrameResiduals& frame : of_frame) {
       for (const auto& [term, pixels] : frame) {
@@ -123,9 +122,10 @@ class CostTable {
       AddShared("shape prior", 0.5 * r.head(B).squaredNorm());
       AddShared("stature", 0.5 * r[B] * r[B]);
     }
-    if (problem_.layout.focal_column < 0) return;
-    const double r = (problem_.log_focal - problem_.log_focal_prior) / problem_.log_focal_sigma;
-    AddShared("focal length prior", 0.5 * r * r);
+    for (const SharedPrior& prior : SharedPriors(problem_, problem_)) {
+      const double r = (prior.value - prior.mean) / prior.sigma;
+      AddShared(prior.term, 0.5 * r * r);
+    }
   }
 
   std::vector<TermCosts> Take() {

@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 void LandmarkTerm::Add(FrameAccumulator* sums) const {
   for (const LandmarkObservation& observation : seen) {
     const Vector3d x = sums->points().Evaluate(sums->kinematics(), *observation.point, sums->derivatives());
-    sums->AddPixel(x, observation.pixel, Eigen::Matrix2d::Identity() / observation.sigma_px, kernel, 1);
+    sums->AddPixel(x, observation.pixel, Eigen::Matrix2d::Identity() / observation.sigma_px, kernel, 1,
+                   observation.velocity_px_s);
   }
 }
 
@@ -44,12 +45,13 @@ double KeypointSigmaPx(double confidence, double height_px) {
 }
 
 std::vector<LandmarkObservation> ObserveLandmarks(const ObservedLandmarks& landmarks, const KeypointSequence& keypoints,
-                                                  int t, double height_px) {
+                                                  int t, double height_px, double sigma_factor) {
   std::vector<LandmarkObservation> result;
   for (size_t i = 0; i < landmarks.names.size(); ++i) {
     const Keypoint& point = keypoints.at(t, landmarks.keypoint_column[i]);
     if (!(point.confidence >= kMinConfidence) || !std::isfinite(point.x) || !std::isfinite(point.y)) continue;
-    result.push_back({&landmarks.points[i], {point.x, point.y}, KeypointSigmaPx(point.confidence, height_px)});
+    result.push_back(
+        {&landmarks.points[i], {point.x, point.y}, sigma_factor * KeypointSigmaPx(point.confidence, height_px)});
   }
   return result;
 }
@@ -77,7 +79,9 @@ std::unique_ptr<ClipTerm> MakeLandmarkTerms(const ClipTermInput& clip) {
   if (clip.input.keypoints == nullptr) return nullptr;
   return EachFrame([clip](int t, const FrameState& state, FrameData* frame) {
     const double height_px = UprightHeightPx(clip.layout, state, clip.stature_m);
-    frame->Get<LandmarkTerm>().seen = ObserveLandmarks(clip.landmarks, *clip.input.keypoints, t, height_px);
+    const bool several = clip.input.views != nullptr && !clip.input.views->empty();
+    frame->Get<LandmarkTerm>().seen =
+        ObserveLandmarks(clip.landmarks, *clip.input.keypoints, t, height_px, several ? kSeveralViewsSigma : 1);
   });
 }
 

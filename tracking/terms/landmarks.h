@@ -32,6 +32,7 @@ struct LandmarkObservation {
   const CompiledPoint* point = nullptr;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double sigma_px = 1;
+  Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();  ///< of the detected position, for the clocks of other views
 };
 
 class LandmarkTerm : public CopyableTerm<LandmarkTerm> {
@@ -58,10 +59,13 @@ ObservedLandmarks FindObservedLandmarks(const BodyModel& model, const KeypointSe
 /// σ of a 2D joint in pixels, for a person `height_px` tall in the image: (0.022 + 0.033 (1 − confidence)^1.5) of it.
 /// It is larger than the detectors' white noise because their errors are correlated over a third of a second.
 double KeypointSigmaPx(double confidence, double height_px);
+/// Factor of σ where several views show the person. A single view's σ is large because its errors move what that view
+/// does not see, the depth of limbs; with a second view the depth is seen. Found on AIST++ (docs/lab/two_views.md).
+inline constexpr double kSeveralViewsSigma = 0.5;
 
-/// The usable 2D joints of frame t.
+/// The usable 2D joints of frame t, with σ times `sigma_factor`.
 std::vector<LandmarkObservation> ObserveLandmarks(const ObservedLandmarks& landmarks, const KeypointSequence& keypoints,
-                                                  int t, double height_px);
+                                                  int t, double height_px, double sigma_factor = 1);
 
 /// Detections below this confidence are ignored by the solver.
 inline constexpr double kMinConfidence = 0.1;

@@ -55,7 +55,7 @@ TEST_P(UncertaintyOf, EqualsTheDenseInverseOfTheNormalMatrix) {
       problem.betas.resize(0);
     }
     ChainProblem chain(problem, false, false, 1);
-    ChainPoint x{problem.states, problem.betas, problem.log_focal};
+    ChainPoint x(problem.states, problem);
     chain.Linearise(x);
     MatrixXd H;
     VectorXd g;

@@ -285,5 +285,35 @@ TEST(GroundPlane, StandingFeetGoWithACameraThatIsSaidToStandStill) {
   EXPECT_TRUE(std::isnan(StandingSpeed(walk.feet, walk.timestamps, {})));
 }
 
+/// Errors along the views' axes are what the views have in common; their own ones leave the stated σ.
+TEST(JoinUps, IsTheTrueVerticalWithinItsStandardDeviation) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  const Vector3d truth = Vector3d(0.05, -1, 0.1).normalized();
+  for (const int num_views : {1, 2, 4}) {
+    double squares = 0, stated = 0;
+    constexpr int kTrials = 2000;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const double along = kUpAlongRad * normal(random);
+      std::vector<UpOfView> views;
+      for (int v = 0; v < num_views; ++v) {
+        const double heading = 1.2 * v;
+        const Vector3d axis = (Vector3d(std::sin(heading), 0, std::cos(heading)) + 0.1 * truth).normalized();
+        const Vector3d error{normal(random), normal(random), normal(random)};
+        views.push_back({(truth + along * axis + kUpAcrossRad * error).normalized(), axis});
+      }
+      const JoinedUps joined = JoinUps(views);
+      squares += joined.up.cross(truth).squaredNorm() / 2 / kTrials;
+      stated += joined.sigma_rad * joined.sigma_rad / kTrials;
+    }
+    EXPECT_NEAR(std::sqrt(squares / stated), 1, 0.05) << num_views << " views";
+  }
+}
+
+TEST(JoinUps, AViewByItselfSaysWhatItSays) {
+  const Vector3d up = Vector3d(0.1, -1, 0.3).normalized();
+  EXPECT_LT((JoinUps(std::vector<UpOfView>{{up, Vector3d::UnitZ()}}).up - up).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace bodyloom::ground_plane_test

@@ -402,7 +402,7 @@ TEST(FrameRows, OneByOneEqualTheSums) {
       FrameEvaluator evaluator;
       FrameRows structure, rows, norms;
       const auto evaluate = [&](FrameAccumulator::Mode mode, FrameRows* result) {
-        evaluator.EvaluateRows(scene->layout, scene->data, scene->state, scene->betas, scene->log_focal, mode, result);
+        evaluator.EvaluateRows(scene->layout, scene->data, scene->state, *scene, mode, result);
       };
       evaluate(FrameAccumulator::Mode::kStructure, &structure);
       evaluate(FrameAccumulator::Mode::kRows, &rows);

@@ -39,7 +39,7 @@ FrameSystem EvaluateAt(const SequenceProblem& problem, const FrameData& data, co
                        const VectorXd& betas, double log_focal) {
   FrameEvaluator evaluator;
   FrameSystem system;
-  evaluator.Evaluate(problem.layout, data, state, betas, log_focal, true, &system);
+  evaluator.Evaluate(problem.layout, data, state, SharedValues{betas, log_focal, {}}, true, &system);
   return system;
 }
 

@@ -43,7 +43,7 @@ TEST(UserTerm, DerivativesMatchDifferencesThroughTheProblem) {
     ASSERT_EQ(scene->problem.frames[2].terms.size(), 4U);
     ASSERT_EQ(scene->problem.couplings.size(), 6U + 2U);
     ChainProblem chain(scene->problem, false, false, 2);
-    const ChainPoint x{scene->problem.states, scene->problem.betas, scene->problem.log_focal};
+    const ChainPoint x(scene->problem.states, scene->problem);
     const int frames = options.frames * chain.frame_size(), s = chain.shared_size();
     ASSERT_GT(chain.Linearise(x), 0);
     const VectorXd gradient = chain.gradient(), shared = chain.shared_gradient();
@@ -72,7 +72,7 @@ TEST(UserTerm, TheChainsMatrixHasTheCouplingsOfFrames) {
   const auto scene = MakeSequenceScene(options);
   AddUserTerms(AllKinds(scene->body, options.knowledge), &scene->problem);
   ChainProblem chain(scene->problem, false, false, 2);
-  ASSERT_TRUE(std::isfinite(chain.Linearise({scene->problem.states, scene->problem.betas, scene->problem.log_focal})));
+  ASSERT_TRUE(std::isfinite(chain.Linearise(ChainPoint(scene->problem.states, scene->problem))));
   MatrixXd H;
   VectorXd g;
   DenseSystem(chain, options.frames, &H, &g);
@@ -227,8 +227,7 @@ TEST(UserTerm, ReadsTheCameraFrameWhereTheCameraMoves) {
     FrameSystem system;
     double cost = 0;
     for (size_t t = 0; t < problem.frames.size(); ++t) {
-      evaluator.Evaluate(problem.layout, problem.frames[t], problem.states[t], problem.betas, problem.log_focal, true,
-                         &system);
+      evaluator.Evaluate(problem.layout, problem.frames[t], problem.states[t], problem, true, &system);
       cost += system.cost;
     }
     if (!moves) cost_of_still = cost;

@@ -62,7 +62,7 @@ TEST(CeresProblem, CostAndGradientAreTheChains) {
       const auto scene = MakeClip(knowledge, moves, pose);
       SequenceProblem& problem = scene->problem;
       ChainProblem chain(problem, false, false, 2);
-      const double expected = chain.Linearise({problem.states, problem.betas, problem.log_focal});
+      const double expected = chain.Linearise(ChainPoint(problem.states, problem));
       VectorXd expected_gradient(chain.gradient().size() + chain.shared_gradient().size());
       expected_gradient << chain.gradient(), chain.shared_gradient();
       double by_term = 0;
@@ -146,7 +146,7 @@ TEST(CeresProblem, CovarianceIsTheChains) {
   solve.function_tolerance = 1e-14;
   SolveSequence(&problem, solve);
   ChainProblem chain(problem, false, false, 1);
-  chain.Linearise({problem.states, problem.betas, problem.log_focal});
+  chain.Linearise(ChainPoint(problem.states, problem));
   ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
   MatrixXd P;
   ASSERT_TRUE(VisitCovariance(&chain, &factor, 2, 3, 1, [&](int, const MatrixXd& of_frame) { P = of_frame; }));

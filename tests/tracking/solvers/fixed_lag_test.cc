@@ -34,7 +34,7 @@ TEST(ChainPrior, MarginalStepsEqualThoseOfTheWholeSystem) {
     options.knowledge = knowledge;
     const auto scene = MakeSequenceScene(options);
     SequenceProblem problem = scene->problem;
-    ChainPoint x{problem.states, problem.betas, problem.log_focal};
+    ChainPoint x(problem.states, problem);
     ChainPrior priors[2];
     ChainProblem chain(problem, false, false, 1);
     chain.Linearise(x);
@@ -75,7 +75,7 @@ TEST(ChainPrior, GradientIsTheDerivativeOfTheCost) {
   const auto scene = MakeSequenceScene(options);
   SequenceProblem problem = scene->problem;
   ChainProblem chain(problem, false, false, 1);
-  ChainPoint x{problem.states, problem.betas, problem.log_focal};
+  ChainPoint x(problem.states, problem);
   chain.Linearise(x);
   ChainPrior prior;
   ASSERT_TRUE(chain.Marginalise(x, &prior));
@@ -159,7 +159,7 @@ TEST(FixedLag, CovarianceEqualsTheBatchsWhenEverythingIsLinear) {
     for (int i = 0; i < open; ++i) batch.states[t + 1 - open + i] = lag.problem().states[i];
     ChainProblem chain(batch, false, false, 1);
     ChainFactor factor(chain.frame_size(), chain.shared_size(), chain.cut_before());
-    chain.Linearise({batch.states, batch.betas, batch.log_focal});
+    chain.Linearise(ChainPoint(batch.states, batch));
     std::vector<MatrixXd> expected(t + 1);
     ASSERT_TRUE(VisitCovariance(&chain, &factor, 0, t + 1, 1, [&](int i, const MatrixXd& P) { expected[i] = P; }));
     int visited = 0;

@@ -59,7 +59,9 @@ ChainProblem::ChainProblem(const SequenceProblem& problem, bool shape_constant, 
       focal_constant_(focal_constant || problem.layout.focal_column < 0) {
   const FrameLayout& layout = problem.layout;
   for (int b = 0; b < layout.num_betas && !shape_constant_; ++b) shared_columns_.push_back(layout.beta_column + b);
-  if (!focal_constant_) shared_columns_.push_back(layout.focal_column);
+  for (int column = layout.beta_column + layout.num_betas; column < layout.num_columns; ++column) {
+    if (column != layout.focal_column || !focal_constant_) shared_columns_.push_back(column);
+  }
   for (size_t shot = 0; shot < problem.smoothness.size(); ++shot) {
     std::vector<Eigen::Array3d>& inverse = inverse_sigma_.emplace_back();
     const std::vector<double> joint_sigma = JointAccelerationSigma(problem, static_cast<int>(shot));
@@ -113,7 +115,8 @@ void ChainProblem::Moved(int dropped) {
 }
 
 void ChainProblem::SetPrior(const ChainPrior* prior) {
-  BODYLOOM_CHECK(prior == nullptr || couplings_.empty(), "chain: a prior beside cost functions on several frames");
+  BODYLOOM_CHECK(prior == nullptr || (couplings_.empty() && problem_.layout.views.empty()),
+                 "chain: a prior beside cost functions on several frames or several views");
   prior_ = prior;
   linearised_ = false;
 }
@@ -132,17 +135,15 @@ bool ChainProblem::StepsFrom(const Anchor& anchor, const FrameState& state, cons
   const auto fits = [](const auto& x) { return x.cwiseAbs().maxCoeff() <= kFarthestSkip; };  // false for NaN
   d->segment<3>(n_ - 3) = state.translation - anchor.state.translation;
   if (!fits(d->segment<3>(n_ - 3))) return false;
-  int at = n_;
-  if (!shape_constant_) {
-    d->segment(at, point.betas.size()) = point.betas - anchor.betas;
-    if (!fits(kMetresPerBeta * d->segment(at, point.betas.size()))) return false;
-    at += static_cast<int>(point.betas.size());
+  const FrameLayout& layout = problem_.layout;
+  const VectorXd shared = SharedStep(layout, anchor.shared, point);
+  for (int i = 0; i < shared_size(); ++i) {
+    const int column = shared_columns_[i] - layout.beta_column;
+    const double unit = column < layout.num_betas ? kMetresPerBeta : 1;
+    (*d)[n_ + i] = shared[column];
+    if (!(std::abs(unit * shared[column]) <= kFarthestSkip)) return false;
   }
-  if (!focal_constant_) {
-    (*d)[at] = point.log_focal - anchor.log_focal;
-    if (!(std::abs((*d)[at]) <= kFarthestSkip)) return false;
-  }
-  at = 0;
+  int at = 0;
   for (int j : problem_.layout.active_joints) {
     d->segment<3>(at) = AxisAngleFromRotation(anchor.state.rotations[j].transpose() * state.rotations[j]);
     if (!fits(d->segment<3>(at))) return false;
@@ -192,17 +193,14 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
     }
     Lease evaluator(this);
     (*evaluator).LimitPoints(max_points_);
-    (*evaluator)
-        .Evaluate(problem_.layout, problem_.frames[t], point.states[t], point.betas, point.log_focal, derivatives,
-                  &system);
+    (*evaluator).Evaluate(problem_.layout, problem_.frames[t], point.states[t], point, derivatives, &system);
     costs_[t] = system.cost;
     if (!derivatives) return;
     frame_gradient_[t] = system.gradient;
     anchor.set = reuse_share_ > 0 && std::isfinite(system.cost);
     if (!anchor.set) return;
     anchor.state = point.states[t];
-    anchor.betas = point.betas;
-    anchor.log_focal = point.log_focal;
+    anchor.shared = point;
     anchor.cost = system.cost;
   });
   num_skipped_ = static_cast<int>(std::count(skipped_.begin(), skipped_.end(), 1));
@@ -214,8 +212,8 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
 double ChainProblem::SharedCost(const ChainPoint& point) const {
   double cost = 0;
   if (problem_.layout.num_betas > 0) cost += 0.5 * (shape_prior_ * point.betas + shape_offset_).squaredNorm();
-  if (problem_.layout.focal_column >= 0) {
-    const double r = (point.log_focal - problem_.log_focal_prior) / problem_.log_focal_sigma;
+  for (const SharedPrior& prior : SharedPriors(problem_, point)) {
+    const double r = (prior.value - prior.mean) / prior.sigma;
     cost += 0.5 * r * r;
   }
   return cost;
@@ -229,16 +227,18 @@ double ChainProblem::Cost(const ChainPoint& point) {
 }
 
 void ChainProblem::AddSharedPriors(const ChainPoint& point) {
-  int at = 0;
   if (!shape_constant_) {
-    at = problem_.layout.num_betas;
-    shared_.topLeftCorner(at, at) += shape_prior_.transpose() * shape_prior_;
-    shared_gradient_.head(at) += shape_prior_.transpose() * (shape_prior_ * point.betas + shape_offset_);
+    const int B = problem_.layout.num_betas;
+    shared_.topLeftCorner(B, B) += shape_prior_.transpose() * shape_prior_;
+    shared_gradient_.head(B) += shape_prior_.transpose() * (shape_prior_ * point.betas + shape_offset_);
   }
-  if (!focal_constant_) {
-    const double information = 1 / (problem_.log_focal_sigma * problem_.log_focal_sigma);
-    shared_(at, at) += information;
-    shared_gradient_[at] += information * (point.log_focal - problem_.log_focal_prior);
+  for (const SharedPrior& prior : SharedPriors(problem_, point)) {
+    const auto column = std::lower_bound(shared_columns_.begin(), shared_columns_.end(), prior.column);
+    if (column == shared_columns_.end() || *column != prior.column) continue;
+    const auto i = column - shared_columns_.begin();
+    const double information = 1 / (prior.sigma * prior.sigma);
+    shared_(i, i) += information;
+    shared_gradient_[i] += information * (prior.value - prior.mean);
   }
 }
 
@@ -301,7 +301,15 @@ bool ChainProblem::IsLinearisedAt(const ChainPoint& point) const {
   const auto same = [](const FrameState& a, const FrameState& b) {
     return a.rotations == b.rotations && a.translation == b.translation;
   };
+  const auto same_view = [](const ViewState& a, const ViewState& b) {
+    const CameraPose &p = a.camera_from_scene, &q = b.camera_from_scene;
+    return p.camera_from_world_rotation == q.camera_from_world_rotation &&
+           p.camera_from_world_translation == q.camera_from_world_translation && a.log_focal == b.log_focal &&
+           a.offset_s == b.offset_s && a.rate == b.rate;
+  };
   return linearised_ && point.log_focal == linearised_at_.log_focal && point.betas == linearised_at_.betas &&
+         std::equal(point.views.begin(), point.views.end(), linearised_at_.views.begin(), linearised_at_.views.end(),
+                    same_view) &&
          std::equal(point.states.begin(), point.states.end(), linearised_at_.states.begin(),
                     linearised_at_.states.end(), same);
 }
@@ -462,19 +470,15 @@ void ChainProblem::Plus(const ChainPoint& x, const VectorXd& step, const VectorX
     FrameState& state = y->states[t];
     Eigen::Index at = static_cast<Eigen::Index>(t) * n_;
     for (int j : joints) {
-      const Matrix3d R = state.rotations[j] * RotationFromAxisAngle(step.segment<3>(at));
-      // Products of many rotations would drift: one Newton step towards the nearest rotation ends that.
-      state.rotations[j] = 0.5 * R * (3 * Matrix3d::Identity() - R.transpose() * R);
+      state.rotations[j] = NearbyRotation(state.rotations[j] * RotationFromAxisAngle(step.segment<3>(at)));
       at += 3;
     }
     state.translation += step.segment<3>(at);
   });
-  int at = 0;
-  if (!shape_constant_) {
-    at = problem_.layout.num_betas;
-    y->betas += shared_step.head(at);
-  }
-  if (!focal_constant_) y->log_focal += shared_step[at];
+  const FrameLayout& layout = problem_.layout;
+  VectorXd all = VectorXd::Zero(layout.num_columns - layout.beta_column);
+  for (int i = 0; i < shared_size(); ++i) all[shared_columns_[i] - layout.beta_column] = shared_step[i];
+  static_cast<SharedValues&>(*y) = StepShared(layout, x, all);
 }
 
 double ChainProblem::SquaredNorm(const ChainPoint& x) const {
@@ -482,6 +486,17 @@ double ChainProblem::SquaredNorm(const ChainPoint& x) const {
   for (const FrameState& state : x.states) {
     sum += state.translation.squaredNorm();
     for (int j : problem_.layout.active_joints) sum += AxisAngleFromRotation(state.rotations[j]).squaredNorm();
+  }
+  for (size_t v = 0; v < x.views.size(); ++v) {
+    const ViewLayout& layout = problem_.layout.views[v];
+    const ViewState& view = x.views[v];
+    const CameraPose& pose = view.camera_from_scene;
+    if (layout.pose_column >= 0) {
+      sum += AxisAngleFromRotation(pose.camera_from_world_rotation).squaredNorm() +
+             pose.camera_from_world_translation.squaredNorm();
+    }
+    if (layout.focal_column >= 0) sum += view.log_focal * view.log_focal;
+    if (layout.clock_column >= 0) sum += view.offset_s * view.offset_s + view.rate * view.rate;
   }
   return sum;
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "tracking/problem/frame_cost.h"
@@ -37,10 +38,11 @@ struct ChainPrior {
 int NumFarRows(const SequenceProblem& problem);
 
 /// Values of the unknowns.
-struct ChainPoint {
+struct ChainPoint : SharedValues {
   std::vector<FrameState> states;
-  Eigen::VectorXd betas;
-  double log_focal = 0;
+  ChainPoint() = default;
+  ChainPoint(std::vector<FrameState> frames, SharedValues shared)
+      : SharedValues(std::move(shared)), states(std::move(frames)) {}
 };
 
 class ChainProblem : public ChainSource {
@@ -66,7 +68,7 @@ class ChainProblem : public ChainSource {
   /// Number of frames for which the last Cost() or Linearise() reused an earlier linearisation.
   [[nodiscard]] int num_skipped() const { return num_skipped_; }
   /// Sets a prior in addition to the problem's terms; borrowed, null: none. The problem must have two frames or more,
-  /// and no couplings.
+  /// and neither couplings nor several views.
   void SetPrior(const ChainPrior* prior);
 
   /// To be called after the borrowed problem has lost its first `dropped` frames; it may also have new frames at its
@@ -131,8 +133,8 @@ class ChainProblem : public ChainSource {
   struct Anchor {
     bool set = false;
     FrameState state;
-    Eigen::VectorXd betas;
-    double log_focal = 0, cost = 0;
+    SharedValues shared;
+    double cost = 0;
   };
   /// A cost function on several frames, weighted by its loss.
   struct Coupling {
@@ -187,7 +189,7 @@ class ChainProblem : public ChainSource {
   bool linearised_ = false;  ///< true if the results of Linearise() are valid, for the point below
   ChainPoint linearised_at_;
   double linearised_cost_ = 0;
-  std::vector<int> shared_columns_;  ///< columns of a frame's matrix that are unknown and shared
+  std::vector<int> shared_columns_;  ///< columns of a frame's matrix that are unknown and shared, ascending
   bool shape_constant_, focal_constant_;
   RowMatrixXd shape_prior_;  ///< residual = shape_prior_ β + shape_offset_
   Eigen::VectorXd shape_offset_;

@@ -18,6 +18,7 @@ struct FrameBatch::Frame {
   const FrameLayout* layout;
   const FrameData* data;
   const FrameState* held;
+  const SharedValues* held_shared;
   std::vector<double*> parameters;
   std::vector<ResidualGroup> groups;
   std::vector<int> term_of_group;
@@ -27,25 +28,39 @@ struct FrameBatch::Frame {
   bool compress = false, is_finite = false;
 
   void Evaluate(Mode mode);
-  void Compress(FrameEvaluator* evaluator, const FrameState& state, const VectorXd& betas, double log_focal, Mode mode,
+  void Compress(FrameEvaluator* evaluator, const FrameState& state, const SharedValues& shared, Mode mode,
                 FrameRows* rows) const;
-  void StateOf(FrameState* state, VectorXd* betas, double* log_focal) const;
+  void StateOf(FrameState* state, SharedValues* shared) const;
 };
 
-void FrameBatch::Frame::StateOf(FrameState* state, VectorXd* betas, double* log_focal) const {
+void FrameBatch::Frame::StateOf(FrameState* state, SharedValues* shared) const {
   *state = *held;
+  *shared = *held_shared;
   size_t block = 0;
   for (int j : layout->active_joints) {
     state->rotations[j] = RotationFromAxisAngle(Eigen::Map<const Eigen::Vector3d>(parameters[block++]));
   }
   state->translation = Eigen::Map<const Eigen::Vector3d>(parameters[block++]);
-  betas->resize(layout->num_betas);
-  if (layout->num_betas > 0) *betas = Eigen::Map<const VectorXd>(parameters[block++], layout->num_betas);
-  *log_focal = layout->focal_column >= 0 ? parameters[block][0] : 0.0;
+  if (layout->num_betas > 0) shared->betas = Eigen::Map<const VectorXd>(parameters[block++], layout->num_betas);
+  if (layout->focal_column >= 0) shared->log_focal = parameters[block++][0];
+  for (size_t v = 0; v < layout->views.size(); ++v) {
+    const ViewLayout& view = layout->views[v];
+    ViewState& values = shared->views[v];
+    if (view.pose_column >= 0) {
+      CameraPose& pose = values.camera_from_scene;
+      pose.camera_from_world_rotation = RotationFromAxisAngle(Eigen::Map<const Eigen::Vector3d>(parameters[block++]));
+      pose.camera_from_world_translation = Eigen::Map<const Eigen::Vector3d>(parameters[block++]);
+    }
+    if (view.focal_column >= 0) values.log_focal = parameters[block++][0];
+    if (view.clock_column >= 0) {
+      values.offset_s = parameters[block][0];
+      values.rate = parameters[block++][1];
+    }
+  }
 }
 
-void FrameBatch::Frame::Compress(FrameEvaluator* evaluator, const FrameState& state, const VectorXd& betas,
-                                 double log_focal, Mode mode, FrameRows* rows) const {
+void FrameBatch::Frame::Compress(FrameEvaluator* evaluator, const FrameState& state, const SharedValues& shared,
+                                 Mode mode, FrameRows* rows) const {
   ResidualGroup group;
   group.num_rows = layout->num_columns + 2;
   for (int block = 0; block < layout->num_blocks(); ++block) group.blocks.push_back(block);
@@ -54,7 +69,7 @@ void FrameBatch::Frame::Compress(FrameEvaluator* evaluator, const FrameState& st
   if (mode == Mode::kStructure) return;  // the same at every state
   thread_local FrameSystem system;
   const bool derivatives = mode != Mode::kNorms;
-  evaluator->Evaluate(*layout, *data, state, betas, log_focal, derivatives, &system);
+  evaluator->Evaluate(*layout, *data, state, shared, derivatives, &system);
   rows->is_finite = std::isfinite(system.cost);
   rows->J.resize(group.num_rows, layout->num_columns);
   rows->r.resize(group.num_rows);
@@ -64,14 +79,13 @@ void FrameBatch::Frame::Compress(FrameEvaluator* evaluator, const FrameState& st
 void FrameBatch::Frame::Evaluate(Mode mode) {
   thread_local FrameEvaluator evaluator;
   thread_local FrameState state;
-  thread_local VectorXd betas;
+  thread_local SharedValues shared;
   thread_local FrameRows rows;
-  double log_focal;
-  StateOf(&state, &betas, &log_focal);
+  StateOf(&state, &shared);
   if (compress) {
-    Compress(&evaluator, state, betas, log_focal, mode, &rows);
+    Compress(&evaluator, state, shared, mode, &rows);
   } else {
-    evaluator.EvaluateRows(*layout, *data, state, betas, log_focal, mode, &rows);
+    evaluator.EvaluateRows(*layout, *data, state, shared, mode, &rows);
   }
   is_finite = rows.is_finite;
   if (mode == Mode::kStructure) {
@@ -140,11 +154,13 @@ FrameBatch::FrameBatch(int num_threads, bool compress) : num_threads_(num_thread
 FrameBatch::~FrameBatch() = default;
 
 std::vector<FrameBatch::Entry> FrameBatch::Add(const FrameLayout& layout, const FrameData& data, const FrameState& held,
+                                               const SharedValues& held_shared,
                                                const std::vector<double*>& parameters) {
   Frame& frame = *frames_.emplace_back(std::make_unique<Frame>());
   frame.layout = &layout;
   frame.data = &data;
   frame.held = &held;
+  frame.held_shared = &held_shared;
   frame.parameters = parameters;
   frame.compress = compress_;
   is_prepared_ = false;

@@ -31,10 +31,10 @@ class FrameBatch : public ceres::EvaluationCallback {
     ResidualGroup group;  ///< `blocks` are indices into what Add() was given as parameters
     std::unique_ptr<ceres::CostFunction> cost;
   };
-  /// Adds a frame, with the parameter blocks of all its unknowns in the layout's order; `held` gives the rotations of
-  /// joints that are not active. All are borrowed; the cost functions must not outlive the batch.
+  /// Adds a frame, with the parameter blocks of all its unknowns in the layout's order; `held` and `held_shared` give
+  /// the values that are not unknown. All are borrowed; the cost functions must not outlive the batch.
   std::vector<Entry> Add(const FrameLayout& layout, const FrameData& data, const FrameState& held,
-                         const std::vector<double*>& parameters);
+                         const SharedValues& held_shared, const std::vector<double*>& parameters);
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
  private:

@@ -13,6 +13,7 @@
 #include "geometry/scene/camera_path.h"
 #include "tracking/initialise/ground_plane.h"
 #include "tracking/initialise/lifted_start.h"
+#include "tracking/initialise/view_observations.h"
 #include "tracking/lifter/lifter_input.h"
 #include "tracking/problem/body_points.h"
 #include "tracking/problem/contact_points.h"
@@ -100,6 +101,7 @@ ClipGround::ClipGround(const ClipTermInput& clip)
       lines_(known_ == nullptr && clip.input.camera_from_scene == nullptr ? clip.input.picture_vertical : nullptr),
       lifted_(clip.lifted.frames),
       landmarks_(clip.lifted_landmarks),
+      views_(clip.views),
       why_not_(WhyNoGround(clip.input, clip.options)) {}
 
 std::unique_ptr<ClipTerm> MakeClipGround(const ClipTermInput& clip) { return std::make_unique<ClipGround>(clip); }
@@ -112,25 +114,55 @@ void ClipGround::Observe(SequenceProblem* problem) {
 void ClipGround::BeginFit(SequenceProblem* problem) {
   if (lifted_.empty()) return;
   if (problem->layout.focal_column >= 0) focal_log_sigma_ = problem->log_focal_sigma;
+  timestamps_ = problem->timestamps;
   const int T = static_cast<int>(lifted_.size());
   for (int begin = 0, end = 0; begin < T; begin = end) {
     for (end = begin + 1; end < T && !problem->cut_before[end];) ++end;
     Shot& shot = shots_.emplace_back();
     shot.begin = begin;
     shot.end = end;
-    shot.up = UpInScene({lifted_.data() + begin, lifted_.data() + end},
-                        {problem->frames.data() + begin, problem->frames.data() + end});
-    if (known_ != nullptr) {
-      shot.up.found = true;
-      shot.up.up = known_->up;
-    }
-    JoinLines(*problem, &shot);
+    shot.up_of_first = UpInScene({lifted_.data() + begin, lifted_.data() + end},
+                                 {problem->frames.data() + begin, problem->frames.data() + end});
+    FindVertical(*problem, &shot);
     if (shot.up.found) SetUpright(shot, shot.joined.up, problem);
   }
 }
 
+void ClipGround::FindVertical(const SequenceProblem& problem, Shot* shot) const {
+  shot->up = shot->up_of_first;
+  if (known_ != nullptr) {
+    shot->up.found = true;
+    shot->up.up = known_->up;
+  } else if (!views_.empty()) {
+    std::vector<UpOfView> ups;
+    if (shot->up.found) ups.push_back({shot->up.up, Vector3d::UnitZ()});
+    for (size_t v = 0; v < views_.size(); ++v) {
+      const UpEstimate there = EstimateUp(FramesOfView(v, problem, *shot));
+      const Eigen::Matrix3d& R = problem.views[v].camera_from_scene.camera_from_world_rotation;
+      if (there.found) ups.push_back({R.transpose() * there.up, R.row(2).transpose()});
+    }
+    if (!ups.empty()) {
+      const JoinedUps joined = JoinUps(ups);
+      shot->up.found = true;
+      shot->up.up = joined.up;
+      shot->up_sigma_rad = joined.sigma_rad;
+    }
+  }
+  JoinLines(problem, shot);
+}
+
+std::span<const LiftedFrame> ClipGround::FramesOfView(size_t v, const SequenceProblem& problem,
+                                                      const Shot& shot) const {
+  const std::vector<double>& times = views_[v].keypoints.timestamps;
+  if (views_[v].lifted.empty()) return {};
+  const double offset = problem.views[v].offset_s;
+  const auto at = [&](double time) { return std::lower_bound(times.begin(), times.end(), time) - times.begin(); };
+  const auto first = at(timestamps_[shot.begin] + offset), last = at(timestamps_[shot.end - 1] + offset);
+  return std::span(views_[v].lifted).subspan(first, std::max<std::ptrdiff_t>(0, last - first));
+}
+
 void ClipGround::JoinLines(const SequenceProblem& problem, Shot* shot) const {
-  shot->joined = {.up = shot->up.up, .sigma_rad = known_ != nullptr ? kKnownUpRad : GroundPlaneOptions().up_rad};
+  shot->joined = {.up = shot->up.up, .sigma_rad = known_ != nullptr ? kKnownUpRad : shot->up_sigma_rad};
   if (lines_ == nullptr || !shot->up.found) return;
   shot->joined =
       JoinVerticals(shot->up.up, shot->joined.sigma_rad, *lines_, std::exp(problem.log_focal), focal_log_sigma_);
@@ -166,7 +198,7 @@ void ClipGround::Hold(const Stance& stance, const GroundPlane& ground, FrameData
 GroundPlane ClipGround::PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
                                    const std::vector<double>& timestamps, const JoinedVertical& vertical) const {
   const Vector3d& up = vertical.up;
-  GroundPlaneOptions options;
+  GroundPlaneOptions options = GroundPlaneOptions::OfViews(1 + views_.size());
   options.up_rad = vertical.sigma_rad;
   if (known_ == nullptr) return EstimateGroundPlane(feet, timestamps, up, options);
   if (known_->has_plane) {
@@ -184,7 +216,8 @@ void ClipGround::StandOnFloors(const SupportLevels& levels, const std::vector<in
   for (const SupportLevel& level : levels.levels) {
     shot->floors.push_back(std::make_unique<FrameGround>(
         FrameGround{shot->ground.normal, level.level_m, shot->joined.up, shot->joined.sigma_rad,
-                    shot->ground.up_sigma_rad / std::sqrt(2), shot->ground.offset_sigma_m}));
+                    shot->ground.up_sigma_rad / std::sqrt(2), shot->ground.offset_sigma_m,
+                    GroundPlaneOptions::OfViews(1 + views_.size()).depth_m}));
   }
   for (size_t i = 0; i < index.size(); ++i) {
     FrameGround* floor = shot->floors[levels.of_frame[i]].get();
@@ -206,6 +239,7 @@ bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coar
   std::vector<char> held(lifted_.size(), 0);
   bool any = false;
   for (Shot& shot : shots_) {
+    if (!views_.empty()) FindVertical(*coarse, &shot);
     if (!shot.up.found) {
       shot.ground.why = "the vertical is not clear";
       continue;

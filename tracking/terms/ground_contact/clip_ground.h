@@ -41,13 +41,20 @@ class ClipGround : public ClipTerm {
  private:
   struct Shot {
     int begin = 0, end = 0;
-    UpEstimate up;          ///< the lifter's, or as given
+    UpEstimate up_of_first;  ///< the lifter's, in the first view
+    UpEstimate up;           ///< the lifter's of all views, or as given
+    double up_sigma_rad = GroundPlaneOptions().up_rad;
     JoinedVertical joined;  ///< with the lines of the picture
     GroundPlane ground;
     std::vector<SupportLevel> levels;                  ///< the main one first; none without a ground
     std::vector<std::unique_ptr<FrameGround>> floors;  ///< by level; frames point to theirs
     std::vector<StandingFoot> stances;                 ///< without their places
   };
+  /// The lifter's vertical in all views, or the known one, joined with the lines.
+  void FindVertical(const SequenceProblem& problem, Shot* shot) const;
+  /// The lifter's frames of view v over the time of a shot.
+  [[nodiscard]] std::span<const LiftedFrame> FramesOfView(size_t v, const SequenceProblem& problem,
+                                                          const Shot& shot) const;
   /// Joins the lifter's vertical with the picture's lines, for the focal length of `problem`.
   void JoinLines(const SequenceProblem& problem, Shot* shot) const;
   /// The plane that feet stand on in a shot whose vertical is found.
@@ -70,6 +77,8 @@ class ClipGround : public ClipTerm {
   double focal_log_sigma_ = 0;    ///< of the focal length that the fit begins with; 0: known
   const std::vector<LiftedFrame>& lifted_;
   const LiftedLandmarks& landmarks_;
+  const std::vector<ViewObservations>& views_;
+  std::vector<double> timestamps_;  ///< of the clip
   std::vector<Shot> shots_;
   std::string why_not_;
   int contact_frames_ = 0;

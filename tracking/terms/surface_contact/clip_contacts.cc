@@ -149,7 +149,7 @@ void FitGrounds(const std::vector<FrameGround*>& grounds, const std::vector<std:
   const auto n = static_cast<Eigen::Index>(grounds.size());
   const Vector3d measured = grounds.front()->measured_up;
   const double sigma_u = std::max(grounds.front()->measured_up_sigma_rad, kMinUpSigma),
-               depth_m = GroundPlaneOptions().depth_m;
+               depth_m = grounds.front()->depth_sigma_m;
   const Vector3d e1 = measured.unitOrthogonal(), e2 = measured.cross(e1);
   VectorXd x = VectorXd::Zero(3 + n);
   const Vector3d up0 = grounds.front()->up / grounds.front()->up.dot(measured);

@@ -41,7 +41,7 @@ TEST(ChainProblem, LinearisedAgainAfterAnyChangeItIsTheSameAsAnew) {
   const auto scene = MakeSequenceScene({});
   SequenceProblem problem = scene->problem;
   ChainProblem chain(problem, false, false, 2);
-  const ChainPoint x{problem.states, problem.betas, problem.log_focal};
+  const ChainPoint x(problem.states, problem);
   const VectorXd step = VectorXd::Constant(static_cast<Eigen::Index>(x.states.size()) * chain.frame_size(), 0.01);
   ChainPoint y;
   chain.Plus(x, step, VectorXd::Constant(chain.shared_size(), 0.01), &y);
@@ -88,7 +88,7 @@ TEST(ChainProblem, FrozenFramesChangeNothingButTheWork) {
   const auto scene = MakeSequenceScene(options);
   const SequenceProblem& problem = scene->problem;
   ChainProblem chain(problem, false, false, 2);
-  const ChainPoint x{problem.states, problem.betas, problem.log_focal};
+  const ChainPoint x(problem.states, problem);
   EXPECT_THROW(chain.SetFrozen(std::vector<char>(16, 1)), std::invalid_argument) << "not linearised yet";
   chain.Linearise(x);
   EXPECT_THROW(chain.SetFrozen(std::vector<char>(15, 1)), std::invalid_argument);

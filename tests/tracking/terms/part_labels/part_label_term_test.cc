@@ -24,12 +24,10 @@ using Eigen::VectorXd;
 constexpr int kWidth = 320, kHeight = 360;
 constexpr double kPersonPx = 170;
 
-struct Scene {
+struct Scene : SharedValues {
   BodyModel body{ToyBodyData()};
   FrameLayout layout;
   FrameState truth;
-  VectorXd betas;
-  double log_focal = 0;
   std::shared_ptr<const Skinner> skinner = std::make_shared<const Skinner>(body);
   PartLabelSequence labels;
 };
@@ -79,7 +77,7 @@ FrameSystem Evaluate(const Scene& scene, const PartLabelMatches& term, const Fra
   data.Get<PartLabelTerm>().matches = &term;
   FrameEvaluator evaluator;
   FrameSystem system;
-  evaluator.Evaluate(scene.layout, data, state, scene.betas, scene.log_focal, true, &system, residuals);
+  evaluator.Evaluate(scene.layout, data, state, scene, true, &system, residuals);
   return system;
 }
 

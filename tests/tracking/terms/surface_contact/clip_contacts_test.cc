@@ -14,6 +14,7 @@
 #include "geometry/math/rotation.h"
 #include "tracking/initialise/lifted_landmarks.h"
 #include "tracking/initialise/lifted_start.h"
+#include "tracking/initialise/view_observations.h"
 #include "tracking/problem/mass_centre.h"
 #include "tracking/problem/track_input.h"
 #include "tracking/problem/track_options.h"
@@ -85,7 +86,8 @@ class Clip {
             .layout = problem_.layout,
             .landmarks = landmarks_,
             .lifted = lifted_,
-            .lifted_landmarks = lifted_landmarks_};
+            .lifted_landmarks = lifted_landmarks_,
+            .views = views_};
   }
 
   const BodyModel& body_ = BuiltinBody();
@@ -94,6 +96,7 @@ class Clip {
   ObservedLandmarks landmarks_;
   LiftedStart lifted_;
   LiftedLandmarks lifted_landmarks_;
+  std::vector<ViewObservations> views_;
   SequenceProblem problem_;
   FrameGround ground_;
   std::unique_ptr<ClipBalance> balance_;

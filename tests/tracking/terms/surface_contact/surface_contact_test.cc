@@ -113,12 +113,10 @@ TEST(SurfaceContact, RowsDoNotDependOnTheState) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 54);
   FrameEvaluator evaluator;
   FrameRows rows;
-  evaluator.EvaluateRows(scene->layout, scene->data, scene->state, scene->betas, scene->log_focal,
-                         FrameAccumulator::Mode::kRows, &rows);
+  evaluator.EvaluateRows(scene->layout, scene->data, scene->state, *scene, FrameAccumulator::Mode::kRows, &rows);
   EXPECT_EQ(rows.groups.size(), 9U);
   scene->data.Get<SurfaceContactTerm>().level_m -= 10;
-  evaluator.EvaluateRows(scene->layout, scene->data, scene->state, scene->betas, scene->log_focal,
-                         FrameAccumulator::Mode::kRows, &rows);
+  evaluator.EvaluateRows(scene->layout, scene->data, scene->state, *scene, FrameAccumulator::Mode::kRows, &rows);
   EXPECT_EQ(rows.groups.size(), 9U);
 }
 
