@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/rig/track_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/body/posed_body.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/problem/moving_camera.h"
+
+namespace bodyloom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// Options of a fit alone, which only gives a start.
+TrackSequenceOptions Alone(TrackSequenceOptions options, const ObservedView& view) {
+  options.camera_knowledge = view.knowledge;
+  options.solver = SequenceSolver::kChain;
+  options.estimate_uncertainty = false;
+  options.ground.contact_weight = options.ground.surface_weight = options.ground.balance_weight = 0;
+  options.user_terms.clear();
+  return options;
+}
+
+/// The tree of best agreement from the first view: each view's neighbour, nearer to the first, and the alignment that
+/// takes the neighbour's frame and clock to its own. Views that agree with none keep neighbour −1.
+void FindTree(const std::vector<ViewMotion>& motions, TrackViewsSummary* summary) {
+  const int V = static_cast<int>(motions.size());
+  summary->alignment.assign(V, MotionAlignment());
+  summary->neighbour.assign(V, -1);
+  summary->used.assign(V, 0);
+  summary->used[0] = 1;
+  std::vector<std::vector<MotionAlignment>> pairs(V, std::vector<MotionAlignment>(V));
+  const auto align = [&](int a, int b) { pairs[a][b] = AlignMotions(motions[a], motions[b]); };
+  for (int added = 0; added + 1 < V; ++added) {
+    int from = -1, to = -1;
+    for (int a = 0; a < V; ++a) {
+      if (summary->used[a] == 0 || motions[a].points.empty()) continue;
+      for (int b = 0; b < V; ++b) {
+        if (summary->used[b] != 0 || motions[b].points.empty()) continue;
+        if (pairs[a][b].score == 0 && pairs[a][b].why.empty()) align(a, b);
+        if (!pairs[a][b].found) continue;
+        if (from < 0 || pairs[a][b].distance_m < pairs[from][to].distance_m) {
+          from = a;
+          to = b;
+        }
+      }
+    }
+    if (from < 0) break;
+    summary->used[to] = 1;
+    summary->neighbour[to] = from;
+    summary->alignment[to] = pairs[from][to];
+  }
+  for (int v = 1; v < V; ++v) {
+    if (summary->used[v] == 0) summary->alignment[v] = pairs[0][v];
+  }
+}
+
+FrameState StateAt(const BodyModel& body, const Track& track, double time, bool* known) {
+  const std::vector<double>& times = track.motion.timestamps;
+  const auto after = std::upper_bound(times.begin(), times.end(), time) - times.begin();
+  *known = false;
+  if (after == 0 || time > times.back() + 0.1) return {};
+  const int a = static_cast<int>(after) - 1, b = std::min(a + 1, track.num_frames() - 1);
+  if (!track.HasResult(a) || !track.HasResult(b)) return {};
+  const auto state = [&](int t) {
+    const BodyPose pose =
+        PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
+    return FrameState{pose.rotations, pose.trans};
+  };
+  *known = true;
+  const double gap = times[b] - times[a];
+  return InterpolateStates(state(a), state(b), gap > 0 ? (time - times[a]) / gap : 0);
+}
+
+/// Poses of the first view's frames: the mean of all views that show the person, in the first view's frame. Frames that
+/// no view shows keep the nearest known pose before them.
+TrackStart AveragePoses(const BodyModel& body, const std::vector<TrackSequenceResult>& alone,
+                        const std::vector<ViewInput>& views, const std::vector<int>& index) {
+  TrackStart start;
+  const Track& first = alone[0].track;
+  const double middle = 0.5 * (first.motion.timestamps.front() + first.motion.timestamps.back());
+  start.betas = first.motion.betas;
+  for (const int v : index) start.betas += alone[v].track.motion.betas;
+  start.betas /= static_cast<double>(1 + index.size());
+  std::vector<char> has_pose;
+  for (int t = 0; t < first.num_frames(); ++t) {
+    const double time = first.motion.timestamps[t];
+    std::vector<FrameState> states;
+    bool known = false;
+    const FrameState own = StateAt(body, first, time, &known);
+    if (known) states.push_back(own);
+    for (size_t i = 0; i < views.size(); ++i) {
+      const double there = time + views[i].offset_s + views[i].rate * (time - middle);
+      FrameState state = StateAt(body, alone[index[i]].track, there, &known);
+      if (!known) continue;
+      FrameLayout layout;
+      layout.model = &body;
+      states.push_back(StateInCamera(layout, Inverse(views[i].camera_from_scene), start.betas, std::move(state)));
+    }
+    FrameState mean;
+    if (!states.empty()) {
+      mean.translation = states[0].translation;
+      for (size_t j = 0; j < states[0].rotations.size(); ++j) {
+        Matrix3d sum = Matrix3d::Zero();
+        for (const FrameState& state : states) sum += state.rotations[j];
+        mean.rotations.push_back(NearestRotation(sum));
+      }
+    }
+    has_pose.push_back(states.empty() ? 0 : 1);
+    start.states.push_back(std::move(mean));
+  }
+  const auto nearest = [&](int t) {
+    for (int d = 1; d < first.num_frames(); ++d) {
+      if (t >= d && has_pose[t - d] != 0) return t - d;
+      if (t + d < first.num_frames() && has_pose[t + d] != 0) return t + d;
+    }
+    return t;
+  };
+  for (int t = 0; t < first.num_frames(); ++t) {
+    if (has_pose[t] == 0) start.states[t] = start.states[nearest(t)];
+  }
+  return start;
+}
+
+}  // namespace
+
+TrackSequenceInput InputOfView(const ObservedView& view, const TrackSequenceInput& common) {
+  TrackSequenceInput input;
+  input.body = common.body;
+  input.prior = common.prior;
+  input.lifter = common.lifter;
+  input.stature_m = common.stature_m;
+  input.keypoints = view.keypoints;
+  input.camera = view.camera;
+  input.focal_prior = view.focal_prior;
+  return input;
+}
+
+TrackSequenceResult FitViewAlone(const ObservedView& view, const TrackSequenceInput& common,
+                                 const TrackSequenceOptions& options) {
+  return FitClip(InputOfView(view, common), Alone(options, view));
+}
+
+ViewMotion MotionOf(const TrackSequenceResult& alone) {
+  constexpr int kFirst = 5, kCount = 12;  // shoulders to ankles
+  ViewMotion motion;
+  if (!alone.summary.IsUsable()) return motion;
+  const Track& track = alone.track;
+  motion.timestamps = track.motion.timestamps;
+  for (int t = 0; t < track.num_frames(); ++t) {
+    motion.points.emplace_back(track.coco17[t].middleRows(kFirst, kCount));
+    if (track.frame_status[t] == FrameStatus::kLost || track.frame_status[t] == FrameStatus::kInterpolated) {
+      motion.points.back().setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return motion;
+}
+
+TrackViewsResult TrackViews(const std::vector<ObservedView>& views, const TrackSequenceInput& common,
+                            const TrackSequenceOptions& options) {
+  const Stopwatch watch;
+  std::vector<TrackSequenceResult> alone;
+  for (const ObservedView& view : views) alone.push_back(FitViewAlone(view, common, options));
+  const double seconds_alone = watch.seconds();
+  TrackViewsResult result = FitViewsTogether(views, std::move(alone), common, options);
+  result.summary.seconds_alone = seconds_alone;
+  result.summary.seconds += seconds_alone;
+  return result;
+}
+
+TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::vector<TrackSequenceResult> alone,
+                                  const TrackSequenceInput& common, const TrackSequenceOptions& options) {
+  BODYLOOM_CHECK(views.size() >= 2, "track views: ", views.size(), " of them, expected two or more");
+  const size_t posed =
+      static_cast<size_t>(std::count_if(views.begin(), views.end(), [](const auto& v) { return v.camera_from_rig; }));
+  BODYLOOM_CHECK(posed == 0 || posed == views.size(), "track views: ", posed, " of ", views.size(),
+                 " cameras have a known pose, expected all or none");
+  TrackViewsResult result;
+  TrackViewsSummary& summary = result.summary;
+  const Stopwatch watch;
+  result.alone = std::move(alone);
+  std::vector<ViewMotion> motions;
+  for (const TrackSequenceResult& view : result.alone) motions.push_back(MotionOf(view));
+  TrackSequenceSummary& joint = result.joint.summary;
+  if (motions[0].points.empty()) {
+    joint.message = "the first view: " + result.alone[0].summary.message;
+    return result;
+  }
+  FindTree(motions, &summary);
+  const bool any = std::any_of(summary.used.begin() + 1, summary.used.end(), [](char used) { return used != 0; });
+  if (!any) {
+    joint.message = "no other view shows the motion of the first: " +
+                    (summary.alignment[1].why.empty() ? "the person is not seen there" : summary.alignment[1].why);
+    return result;
+  }
+
+  // Poses and offsets along the tree, whose order is that of the neighbours.
+  std::vector<CameraPose> from_first(views.size());
+  std::vector<double> offset(views.size(), 0.0), sigma(views.size(), 0.0);
+  std::vector<char> placed(views.size(), 0);
+  placed[0] = 1;
+  for (size_t round = 1; round < views.size(); ++round) {
+    for (size_t v = 1; v < views.size(); ++v) {
+      const int n = summary.neighbour[v];
+      if (placed[v] != 0 || n < 0 || placed[n] == 0) continue;
+      from_first[v] = Compose(summary.alignment[v].b_from_a, from_first[n]);
+      offset[v] = offset[n] + summary.alignment[v].offset_s;
+      sigma[v] = std::hypot(sigma[n], summary.alignment[v].offset_sigma_s);
+      placed[v] = 1;
+    }
+  }
+  std::vector<ViewInput> others;
+  std::vector<int> index;
+  for (size_t v = 1; v < views.size(); ++v) {
+    if (placed[v] == 0) continue;
+    const ObservedView& view = views[v];
+    ViewInput& other = others.emplace_back();
+    other.keypoints = view.keypoints;
+    other.knowledge = view.knowledge;
+    other.camera = view.camera;
+    if (view.knowledge != CameraKnowledge::kKnown) other.camera.fx = result.alone[v].track.camera.fx;
+    other.focal_prior = view.focal_prior;
+    other.pose_known = view.camera_from_rig.has_value();
+    other.camera_from_scene =
+        other.pose_known ? Compose(*view.camera_from_rig, Inverse(*views[0].camera_from_rig)) : from_first[v];
+    other.clock_known = view.offset_s.has_value();
+    other.offset_s = view.offset_s.value_or(offset[v]);
+    other.offset_sigma_s = std::max(0.02, 3 * sigma[v]);
+    index.push_back(static_cast<int>(v));
+  }
+  TrackStart start = AveragePoses(*common.body, result.alone, others, index);
+  start.focal_px = result.alone[0].track.camera.fx;
+  TrackSequenceInput input = InputOfView(views[0], common);
+  input.ground = common.ground;
+  input.views = &others;
+  input.start = &start;
+  TrackSequenceOptions all = options;
+  all.camera_knowledge = views[0].knowledge;
+  result.joint = FitClip(input, all);
+  summary.seconds = watch.seconds();
+  return result;
+}
+
+}  // namespace bodyloom
