@@ -9,6 +9,8 @@
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
+#include "geometry/base/callbacks.h"
+#include "pipelines/export/export_rig.h"
 #include "pipelines/export/export_track.h"
 
 namespace bodyloom {
@@ -26,29 +28,48 @@ constexpr const char* kExportFooter =
     "  trc, c3d   22 markers of HALPE_26 for OpenSim, Pose2Sim and others: metres, millimetres\n"
     "  colmap     a folder with the camera as a COLMAP text model; several --track\n"
     "  pose2sim   the camera as Calib.toml, z up\n"
+    "What is written of --cameras, in the frame of its poses (of rig.json the first camera's), metres:\n"
+    "  rig-toml    Pose2Sim's Calib.toml\n"
+    "  rig-opencv  YAML of OpenCV's FileStorage: a list of cameras\n"
+    "  rig-colmap  a folder with a COLMAP text model: a camera and an image each, no points\n"
     "Examples:\n"
     "  bodyloom export --track track.npz --what bvh --rig mixamo --out motion.bvh\n"
     "  bodyloom export --track results/person_0.npz --track results/person_1.npz --what glb --out people.glb\n"
-    "  bodyloom export --track track.npz --what obj --frame 120 --out frame.obj\n\n";
+    "  bodyloom export --track track.npz --what obj --frame 120 --out frame.obj\n"
+    "  bodyloom export --cameras rig.json --what rig-toml --out Calib.toml\n\n";
 
 std::vector<std::string> SortedNames() {
   std::vector<std::string> names = TrackFormNames();
+  names.insert(names.end(), RigFormNames().begin(), RigFormNames().end());
   std::sort(names.begin(), names.end());
   return names;
+}
+
+bool IsRigForm(const std::string& form) {
+  return std::find(RigFormNames().begin(), RigFormNames().end(), form) != RigFormNames().end();
+}
+
+/// Options of the verb that are of tracks, or of their forms.
+void RefuseOptionsOfTracks(const CLI::App& verb, const std::string& form) {
+  for (const char* option : {"--track", "--body", "--frame", "--axes", "--rig", "--texture", "--correctives"}) {
+    if (verb.count(option) > 0) throw RequestError("--what " + form + " writes cameras: leave out " + option);
+  }
 }
 
 }  // namespace
 
 void AddExportVerb(CLI::App& app, Action* action) {
-  CLI::App* verb =
-      app.add_subcommand("export", "Writes tracks in another form: glTF, BVH, AMASS, TRC, C3D, COLMAP, arrays");
+  CLI::App* verb = app.add_subcommand(
+      "export", "Writes tracks or cameras in another form: glTF, BVH, AMASS, TRC, C3D, COLMAP, arrays");
   verb->footer(std::string(kExportFooter) + kExitCodeHelp);
   auto request = std::make_shared<ExportTrackRequest>();
   auto form = std::make_shared<std::string>();
   auto axes = std::make_shared<std::string>("camera"), rig = std::make_shared<std::string>("smpl");
   ExportTrackRequest& c = *request;
-  verb->add_option("--track", c.tracks, "the track, .npz; several times for people of one clip")
-      ->required()
+  auto rig_request = std::make_shared<ExportRigRequest>();
+  verb->add_option("--track", c.tracks, "the track, .npz; several times for people of one clip")->type_name("FILE");
+  verb->add_option("--cameras", rig_request->cameras,
+                   "rig-...: the cameras: rig.json of track, or any file that track --cameras takes")
       ->type_name("FILE");
   verb->add_option("--what", *form, "what to write (below)")
       ->required()
@@ -69,6 +90,16 @@ void AddExportVerb(CLI::App& app, Action* action) {
       ->capture_default_str();
   verb->callback([=] {
     *action = [=] {
+      if (IsRigForm(*form)) {
+        RefuseOptionsOfTracks(*verb, *form);
+        rig_request->form = RigFormFromString(*form);
+        rig_request->out = request->out;
+        std::cout << ToText(ExportRig(*rig_request));
+        return;
+      }
+      if (!rig_request->cameras.empty()) {
+        throw RequestError("--cameras is of rig-toml, rig-opencv and rig-colmap, not of " + *form);
+      }
       request->form = TrackFormFromString(*form);
       request->rig = BvhRigFromString(*rig);
       request->world_axes = *axes == "world";

@@ -10,6 +10,7 @@
 /// Source: colmap doc/format.rst.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "data_tools/export/export_scene.h"
@@ -17,6 +18,16 @@
 #include "geometry/scene/world_frame.h"
 
 namespace bodyloom {
+
+/// Lines of cameras.txt and images.txt (the latter with its empty line of points). Throws std::invalid_argument for a
+/// camera without image size or of weak perspective.
+std::string ColmapCameraLine(int camera_id, const Camera& camera);
+std::string ColmapImageLine(size_t image_id, const CameraPose& camera_from_world, int camera_id,
+                            const std::string& name);
+/// First lines of these files: comments.
+std::string ColmapCamerasHeading();
+std::string ColmapImagesHeading();
+std::string ColmapPointsHeading();
 
 std::string ColmapCamerasText(const Camera& camera);
 std::string ColmapImagesText(const ExportScene& scene);
@@ -34,6 +45,9 @@ void WriteColmap(const std::string& folder, const ExportScene& scene);
 /// `name`: letters, digits, '_' and '-'. The distortion coefficients k3 … k6, which the format does not support, are
 /// left out. Throws std::invalid_argument for another name, no image size, or weak perspective.
 std::string Pose2SimCalibrationText(const std::string& name, const Camera& camera, const WorldFrame& world);
+/// One camera's table, and the table that ends the file; throws as above.
+std::string Pose2SimCameraTable(const std::string& name, const Camera& camera, const CameraPose& camera_from_world);
+std::string Pose2SimMetadata();
 void WritePose2SimCalibration(const std::string& path, const std::string& name, const Camera& camera,
                               const WorldFrame& world);
 

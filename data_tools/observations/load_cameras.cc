@@ -101,6 +101,7 @@ NamedCamera AistCamera(const JsonNode& node) {
   SetK(node.At("matrix"), &named.camera);
   SetDistortion(node.At("distortions"), &named.camera);
   SetPose(node.At("rotation"), node.At("translation"), kCentimetre, &named.pose);
+  named.has_pose = true;
   return named;
 }
 
@@ -112,6 +113,7 @@ NamedCamera Pose2SimCamera(const JsonNode& node) {
   SetK(node.At("K"), &named.camera);
   SetDistortion(node.At("dist_k1k2p1p2"), &named.camera);
   SetPose(node.At("rvec"), node.At("tvec_m"), 1, &named.pose);
+  named.has_pose = true;
   return named;
 }
 
@@ -144,24 +146,9 @@ NamedCamera OwnCamera(const JsonNode& node) {
     camera.fy = number_or("fy", camera.fx);
   }
   if (node.Has("distortion")) SetDistortion(node.At("distortion"), &camera);
-  if (node.Has("rotation")) SetPose(node.At("rotation"), node.At("translation"), 1, &named.pose);
+  named.has_pose = node.Has("rotation");
+  if (named.has_pose) SetPose(node.At("rotation"), node.At("translation"), 1, &named.pose);
   return named;
-}
-
-std::vector<NamedCamera> CamerasFromJson(const JsonNode& document) {
-  const bool is_one = document.is_object() && !document.Has("cameras");
-  const JsonNode list = document.Has("cameras") ? document.At("cameras") : document;
-  if (!is_one && (!list.is_array() || list.size() == 0)) list.Fail("a list of cameras");
-  std::vector<NamedCamera> cameras;
-  for (size_t i = 0; i < (is_one ? 1 : list.size()); ++i) {
-    const JsonNode node = is_one ? document : list.At(i);
-    if (!node.is_object()) node.Fail("a camera");
-    cameras.push_back(node.Has("matrix") ? AistCamera(node)
-                      : node.Has("rvec") ? Pose2SimCamera(node)
-                                         : OwnCamera(node));
-    CheckCamera(node, cameras.back().camera);
-  }
-  return cameras;
 }
 
 /// "cam_01", "cam01", "Cam01" are one name.
@@ -238,6 +225,22 @@ CameraPose PoseFromJson(const JsonNode& rotation, const JsonNode& translation) {
   return pose;
 }
 
+std::vector<NamedCamera> CamerasFromJson(const JsonNode& document) {
+  const bool is_one = document.is_object() && !document.Has("cameras");
+  const JsonNode list = document.Has("cameras") ? document.At("cameras") : document;
+  if (!is_one && (!list.is_array() || list.size() == 0)) list.Fail("a list of cameras");
+  std::vector<NamedCamera> cameras;
+  for (size_t i = 0; i < (is_one ? 1 : list.size()); ++i) {
+    const JsonNode node = is_one ? document : list.At(i);
+    if (!node.is_object()) node.Fail("a camera");
+    cameras.push_back(node.Has("matrix") ? AistCamera(node)
+                      : node.Has("rvec") ? Pose2SimCamera(node)
+                                         : OwnCamera(node));
+    CheckCamera(node, cameras.back().camera);
+  }
+  return cameras;
+}
+
 std::vector<NamedCamera> CamerasFromText(const std::string& text, const std::string& where) {
   const nlohmann::json json = ParseJson(text, where);
   return CamerasFromJson(JsonNode(json, where));
@@ -276,7 +279,7 @@ const NamedCamera& FindCamera(const std::vector<NamedCamera>& cameras, const std
                            "; the file has " + PrintableList(present));
 }
 
-void WriteCameras(const std::string& path, const std::vector<NamedCamera>& cameras) {
+nlohmann::json CamerasToJson(const std::vector<NamedCamera>& cameras) {
   nlohmann::json list = nlohmann::json::array();
   for (const NamedCamera& named : cameras) {
     const Camera& camera = named.camera;
@@ -305,7 +308,11 @@ void WriteCameras(const std::string& path, const std::vector<NamedCamera>& camer
     entry["translation"] = {t[0], t[1], t[2]};
     list.push_back(entry);
   }
-  WriteFileAtomically(path, nlohmann::json{{"cameras", list}}.dump(2) + "\n");
+  return list;
+}
+
+void WriteCameras(const std::string& path, const std::vector<NamedCamera>& cameras) {
+  WriteFileAtomically(path, nlohmann::json{{"cameras", CamerasToJson(cameras)}}.dump(2) + "\n");
 }
 
 }  // namespace bodyloom

@@ -16,10 +16,12 @@
 ///      "scale","tx","ty"                    weak perspective: pixels a metre, metres
 ///      "rotation" 3×3 or Rodrigues 3, "translation" 3 metres: camera from world, optional
 ///      "name"                               optional
+///    Of a rig's file (rig_io.h) the cameras are read.
 /// Source: google/aistplusplus_api loader.py (1).
 #pragma once
 
 #include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,7 @@ struct NamedCamera {
   std::string name;
   Camera camera;
   CameraPose pose;
+  bool has_pose = false;  ///< the file has the pose; else it is the identity
   /// Affine map from this camera's pixels to those of its video (identity unless given in the file).
   Matrix2x3d video_px_from_camera_px = (Matrix2x3d() << 1, 0, 0, 0, 1, 0).finished();
 };
@@ -44,6 +47,9 @@ std::vector<NamedCamera> LoadCameras(const std::string& path, const std::string&
 /// The cameras of one file's text; `where` names it in messages.
 std::vector<NamedCamera> CamerasFromText(const std::string& text, const std::string& where);
 
+/// The same of a parsed file.
+std::vector<NamedCamera> CamerasFromJson(const JsonNode& document);
+
 /// Reads one camera of form 3 without its pose, and a pose ("rotation" 3×3 or Rodrigues 3, "translation" 3 metres) of
 /// other JSON.
 Camera CameraFromJson(const JsonNode& node);
@@ -53,6 +59,9 @@ CameraPose PoseFromJson(const JsonNode& rotation, const JsonNode& translation);
 /// std::runtime_error beginning with `where` and listing the cameras present.
 const NamedCamera& FindCamera(const std::vector<NamedCamera>& cameras, const std::string& view,
                               const std::string& where);
+
+/// Form 3's list of cameras, each with its pose.
+nlohmann::json CamerasToJson(const std::vector<NamedCamera>& cameras);
 
 /// Writes form 3 with a list of cameras.
 void WriteCameras(const std::string& path, const std::vector<NamedCamera>& cameras);

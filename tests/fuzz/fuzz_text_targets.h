@@ -20,6 +20,7 @@
 #include "data_tools/observations/mmpose_reader.h"
 #include "data_tools/observations/openpose_reader.h"
 #include "data_tools/observations/pose2sim_toml.h"
+#include "data_tools/observations/rig_io.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {
@@ -60,6 +61,17 @@ inline bool AcceptsCameras(const std::string& bytes) {
     }
   });
   return taken;
+}
+
+inline bool AcceptsRig(const std::string& bytes) {
+  return Accepts([&] {
+    for (const RigCamera& camera : RigFromText(bytes, "fuzz.json")) {
+      if (!camera.camera_from_rig.camera_from_world_rotation.allFinite()) {
+        throw std::logic_error("a camera without a rotation");
+      }
+      if (camera.offset_sigma_s < 0 || !(camera.rate > -1)) throw std::logic_error("a clock that does not run");
+    }
+  });
 }
 
 /// Reads the input as this project's JSON and as each of COLMAP's files.

@@ -18,6 +18,7 @@ TEST(FuzzCorpus, Track) { RunMutations("track", AcceptsTrack, 4000); }
 TEST(FuzzCorpus, Obj) { RunMutations("obj", AcceptsObj, 4000); }
 TEST(FuzzCorpus, Detections) { RunMutations("detections", AcceptsDetections, 6000); }
 TEST(FuzzCorpus, Cameras) { RunMutations("cameras", AcceptsCameras, 4000); }
+TEST(FuzzCorpus, Rig) { RunMutations("rig", AcceptsRig, 4000); }
 TEST(FuzzCorpus, CameraPath) { RunMutations("camera_path", AcceptsCameraPath, 4000); }
 TEST(FuzzCorpus, Bvh) { RunMutations("bvh", AcceptsBvh, 4000); }
 TEST(FuzzCorpus, AsfAmc) { RunMutations("asf_amc", AcceptsAsfAmc, 4000); }

@@ -80,6 +80,11 @@ void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
       "matrix = [ [ 1681.0, 0.0, 533.0],\n [ 0.0, 1682.0, 948.0], [ 0.0, 0.0, 1.0]]  # px\n"
       "distortions = [ -0.05, 0.1]\nrotation = [ 0.1, 0.2, 0.3]\ntranslation = [ 0.3, 0.9, 2.9]\nfisheye = false\n"
       "[cameras.second]\nsize = [ 640, 480]\n[metadata]\nadjusted = false\n"};
+  (*seeds)["rig"] = {
+      R"({"rig":1,"cameras":[{"name":"a","width":640,"height":480,"fx":600,"rotation":[0,0,0],"translation":[0,0,0],)"
+      R"("offset_s":0,"rate":0,"middle_s":0,"rotation_sigma_rad":0},)"
+      R"({"name":"b","width":640,"height":480,"fx":600,"rotation":[0.1,0.2,0.3],"translation":[1,0,0.5],)"
+      R"("offset_s":-1.25,"rate":1e-5,"middle_s":2,"rotation_sigma_rad":0.01,"offset_sigma_s":null}]})"};
   const std::string path_of_frames =
       R"({"camera_path":1,"fps":30,"camera":{"width":640,"height":480,"fx":600},"frames":[)"
       R"({"frame":0,"quaternion":[1,0,0,0],"translation":[0,0,0]},)"
