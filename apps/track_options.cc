@@ -13,6 +13,10 @@ namespace {
 constexpr const char *kSeen = "What was seen", *kCamera = "The camera", *kKnown = "What else is known",
                      *kWanted = "Results", *kSolve = "The solve";
 
+constexpr const char* kDetectionsHelp =
+    "2D joints of a detector: a folder of OpenPose or MMPose JSON files, a COCO, AlphaPose, MMPose or MediaPipe JSON, "
+    "an AIST++ keypoints2d pickle, FreeMoCap's 2D .npy, or this project's .npz";
+
 /// A validator whose range is described in the option's own words.
 CLI::Validator Quiet(CLI::Validator validator) {
   validator.description("");
@@ -172,14 +176,11 @@ void AddSolveOptions(CLI::App& app, TrackSettings* request) {
       ->group(kSolve);
 }
 
-void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
+namespace {
+
+/// All but those of the detections' files and their views.
+void AddOtherTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   TrackRequest& c = *request;
-  app.add_option("--detections", c.detections,
-                 "2D joints of a detector: a folder of OpenPose or MMPose JSON files, a COCO, AlphaPose, MMPose or "
-                 "MediaPipe JSON, "
-                 "an AIST++ keypoints2d pickle, FreeMoCap's 2D .npy, or this project's .npz")
-      ->group(kSeen)
-      ->type_name("FILE");
   app.add_option("--dense", c.dense,
                  "dense surface keypoints: a folder of DensePose *_IUV.png (one a frame), or this project's .npz")
       ->group(kSeen)
@@ -195,7 +196,6 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
          "others")
       ->group(kSeen)
       ->type_name("FILE");
-  app.add_option("--view", c.view, "camera of a file that holds several, as c01")->group(kSeen)->type_name("NAME");
   app.add_option("--person", c.person, "which person when there are several: 0 is the largest and longest in view")
       ->group(kSeen)
       ->check(Quiet(CLI::NonNegativeNumber))
@@ -262,6 +262,42 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
       ->group(kSolve)
       ->type_name("LAG")
       ->check(Quiet(CLI::Range(0, 60)));
+}
+
+}  // namespace
+
+void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
+  app.add_option("--detections", request->detections, kDetectionsHelp)->group(kSeen)->type_name("FILE");
+  app.add_option("--view", request->view, "camera of a file that holds several, as c01")
+      ->group(kSeen)
+      ->type_name("NAME");
+  AddOtherTrackOptions(app, request, quiet);
+}
+
+void AddTrackViewsOptions(CLI::App& app, TrackViewsRequest* request, bool* quiet) {
+  app.add_option("--detections", request->view_detections,
+                 std::string(kDetectionsHelp) + "; several times for several cameras, the track's first")
+      ->group(kSeen)
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  app.add_option("--view", request->views,
+                 "camera of a file that holds several, as c01; several, as c01,c03, are tracked together")
+      ->group(kSeen)
+      ->type_name("NAME,...")
+      ->allow_extra_args(false)
+      ->delimiter(',');
+  AddOtherTrackOptions(app, request, quiet);
+  app.add_option_function<std::string>(
+         "--known", [request](const std::string& word) { request->known = KnownOfRigFromString(word); },
+         "several views: how much of --cameras to use: intrinsics, also poses, also the clocks of a rig.json; the rest "
+         "is estimated")
+      ->group(kCamera)
+      ->default_str(ToString(request->known))
+      ->check(CLI::IsMember({"intrinsics", "poses", "clocks"}));
+  app.add_option("--rig-out", request->rig_out,
+                 "several views: their cameras and clocks (default: rig.json beside --out)")
+      ->group(kWanted)
+      ->type_name("FILE");
 }
 
 }  // namespace bodyloom

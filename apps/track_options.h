@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipelines/track/track_request.h"
+#include "pipelines/track/view_inputs.h"
 
 namespace CLI {
 class App;
@@ -24,5 +25,7 @@ void AddSolveOptions(CLI::App& app, TrackSettings* request);
 /// Binds every field of the request to its option; defaults in --help are those of the struct. `quiet` is the verb's
 /// own.
 void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet);
+/// The same with several views.
+void AddTrackViewsOptions(CLI::App& app, TrackViewsRequest* request, bool* quiet);
 
 }  // namespace bodyloom

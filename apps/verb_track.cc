@@ -8,6 +8,7 @@
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "pipelines/track/track_clip.h"
+#include "pipelines/track/track_views_clip.h"
 
 namespace bodyloom {
 namespace {
@@ -20,6 +21,10 @@ constexpr const char* kTrackFooter =
     "    bodyloom track --detections openpose_json/ --video clip.mp4 --out track.npz --overlay overlay.mp4\n"
     "  one calibrated camera of an AIST++ clip:\n"
     "    bodyloom track --detections keypoints2d/SEQ.pkl --view c01 --cameras cameras/ --out track.npz\n"
+    "  two phones that filmed the same person, of which nothing is known; the cameras go to rig.json:\n"
+    "    bodyloom track --detections left.json --detections right.json --image-size 1920x1080 --out track.npz\n"
+    "  two cameras of one file:\n"
+    "    bodyloom track --detections keypoints2d/SEQ.pkl --view c01,c03 --cameras cameras/ --out track.npz\n"
     "  a body of your own, and the numbers for a program:\n"
     "    bodyloom track --detections coco.json --image-size 1920x1080 --body SMPL_NEUTRAL.pkl --out t.npz --json "
     "t.json\n"
@@ -28,8 +33,9 @@ constexpr const char* kTrackFooter =
     "  what would be done, and why not the rest:\n"
     "    bodyloom track --detections coco.json --image-size 1920x1080 --plan\n\n";
 
-void TrackAndReport(const TrackRequest& request, bool quiet) {
-  const TrackReport report = TrackClip(request, CommandCallbacks(quiet));
+void TrackAndReport(const TrackViewsRequest& request, bool quiet) {
+  const TrackReport report = HasSeveralViews(request) ? TrackViewsClip(request, CommandCallbacks(quiet))
+                                                      : TrackClip(RequestOfOneView(request), CommandCallbacks(quiet));
   if (request.plan) {
     std::cout << report.num_frames << " frames would be tracked:\n" << ToText(report.solve.plan);
   } else if (!quiet) {
@@ -42,9 +48,9 @@ void TrackAndReport(const TrackRequest& request, bool quiet) {
 void AddTrackVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("track", "Fits a body to a clip: a video or detections in, track out");
   verb->footer(std::string(kTrackFooter) + kExitCodeHelp);
-  auto request = std::make_shared<TrackRequest>();
+  auto request = std::make_shared<TrackViewsRequest>();
   auto quiet = std::make_shared<bool>(false);
-  AddTrackOptions(*verb, request.get(), quiet.get());
+  AddTrackViewsOptions(*verb, request.get(), quiet.get());
   verb->callback([request, quiet, action] { *action = [request, quiet] { TrackAndReport(*request, *quiet); }; });
 }
 

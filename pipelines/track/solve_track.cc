@@ -12,14 +12,6 @@
 namespace bodyloom {
 namespace {
 
-TrackSequenceOptions SolveOptionsOf(const TrackRequest& request, const TrackInputs& inputs) {
-  TrackSequenceOptions options = request.solve;
-  options.camera_knowledge = inputs.camera_knowledge;
-  options.straight_knees_weight = StraightKneesWeight(request, inputs.keypoints ? inputs.keypoints->convention : "");
-  if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
-  return options;
-}
-
 LiveTrackerOptions LiveOptionsOf(const TrackRequest& request, const TrackSequenceOptions& solve) {
   LiveTrackerOptions live;
   live.lag = *request.live_lag;
@@ -28,6 +20,14 @@ LiveTrackerOptions LiveOptionsOf(const TrackRequest& request, const TrackSequenc
 }
 
 }  // namespace
+
+TrackSequenceOptions SolveOptionsOf(const TrackRequest& request, const TrackInputs& inputs) {
+  TrackSequenceOptions options = request.solve;
+  options.camera_knowledge = inputs.camera_knowledge;
+  options.straight_knees_weight = StraightKneesWeight(request, inputs.keypoints ? inputs.keypoints->convention : "");
+  if (inputs.joints_from_labels) options.part_labels = PartLabelOptions::LabelsAlone();
+  return options;
+}
 
 TrackSequenceResult SolveTrack(const TrackRequest& request, const TrackInputs& inputs,
                                const PipelineCallbacks& callbacks, double share) {

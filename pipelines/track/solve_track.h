@@ -13,6 +13,9 @@
 
 namespace bodyloom {
 
+/// The request's options for a track of these inputs.
+TrackSequenceOptions SolveOptionsOf(const TrackRequest& request, const TrackInputs& inputs);
+
 /// Tracks the inputs as requested, live or as a whole clip. A usable track gets a world, assumed if it was not observed
 /// (render/view/floor.h). Progress ends at `share`. Throws Cancelled.
 TrackSequenceResult SolveTrack(const TrackRequest& request, const TrackInputs& inputs,

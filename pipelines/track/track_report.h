@@ -9,6 +9,7 @@
 
 #include "data_tools/evaluation/room_physics.h"
 #include "geometry/base/stopwatch.h"
+#include "geometry/scene/rig.h"
 #include "pipelines/track/clip_camera_path.h"
 #include "tracking/clip/initialiser_gain.h"
 #include "tracking/clip/track_plan.h"
@@ -26,6 +27,17 @@ struct InitialiserReport {
   InitialiserGain gain;
 };
 
+/// One camera of a track from several (TrackViewsClip()).
+struct ViewReport {
+  RigCamera camera;        ///< as given or estimated, relative to the first; name
+  std::string detections;  ///< file
+  std::string left_out;    ///< the reason if the view was not used, in which case only the name is set of `camera`
+  std::string doubt;       ///< the reason to doubt that a view that was used shows the first one's motion; empty: none
+  int frames = 0;          ///< of the first view's clip that it shows, too
+  double fps = 0;          ///< median
+  double reprojection_median_px = 0;
+};
+
 struct TrackReport {
   TrackSequenceSummary solve;
   int num_frames = 0;
@@ -33,7 +45,8 @@ struct TrackReport {
   RoomPhysics room;  ///< of the track, where a ground was found or given; else of no frame
   CameraPathReport camera_path;
   std::optional<InitialiserReport> initialiser;
-  StageSeconds seconds;  ///< TrackClip's own stages; the one named kSolveStage is split by solve.seconds
+  std::vector<ViewReport> views;  ///< of a track from several cameras, the first's first
+  StageSeconds seconds;           ///< TrackClip's own stages; the one named kSolveStage is split by solve.seconds
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;
   std::string detections;

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipelines/track/track_views_clip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "data_tools/observations/rig_io.h"
+#include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/scene/camera_path.h"
+#include "pipelines/files.h"
+#include "pipelines/track/solve_track.h"
+#include "pipelines/track/track_outputs.h"
+#include "render/view/floor.h"
+#include "tracking/clip/track_plan.h"
+#include "tracking/rig/track_views.h"
+
+namespace bodyloom {
+namespace {
+
+std::string RigFileOf(const TrackViewsRequest& request) {
+  if (!request.rig_out.empty() || request.out.empty()) return request.rig_out;
+  return (std::filesystem::path(request.out).parent_path() / "rig.json").string();
+}
+
+/// Everything that can be known to fail is made to fail now, before the long work.
+void CheckFilesOfViews(const TrackViewsRequest& request) {
+  const std::string rig = RigFileOf(request);
+  std::error_code ignored;
+  if (request.rig_out.empty() && std::filesystem::equivalent(rig, request.cameras, ignored)) {
+    if (!request.plan)
+      throw RequestError("--cameras " + request.cameras + " would be overwritten: give --rig-out FILE");
+    RequireViewInputs(request);
+    return;
+  }
+  const std::vector<std::string> outputs = {request.out, rig, request.overlay, request.json, request.report};
+  RequireDistinct(RequireViewInputs(request), outputs);
+  if (request.plan) return;
+  for (const std::string& path : outputs) RequireWritable(path);
+}
+
+std::vector<ObservedView> ObservedViews(const std::vector<ViewInputs>& views) {
+  std::vector<ObservedView> observed;
+  for (const ViewInputs& view : views) {
+    const TrackSequenceInput input = view.inputs.ForTracker();
+    ObservedView& one = observed.emplace_back();
+    one.keypoints = input.keypoints;
+    one.knowledge = view.inputs.camera_knowledge;
+    one.camera = input.camera;
+    one.focal_prior = input.focal_prior;
+    one.camera_from_rig = view.camera_from_rig;
+    if (view.clock.HasClock()) one.offset_s = 0;  // its timestamps are of the first view's clock
+  }
+  return observed;
+}
+
+/// The plan of the joint fit: what all views share, and what is estimated of each, by name.
+std::vector<PlanEntry> PlanOfViews(const TrackViewsRequest& request, const std::vector<ViewInputs>& views) {
+  std::vector<ViewInput> others;
+  for (const ObservedView& view : ObservedViews(views)) {
+    ViewInput& other = others.emplace_back();
+    other.keypoints = view.keypoints;
+    other.knowledge = view.knowledge;
+    other.camera = view.camera;
+    other.pose_known = view.camera_from_rig.has_value();
+    other.clock_known = view.offset_s.has_value();
+  }
+  others.erase(others.begin());
+  TrackSequenceInput input = views[0].inputs.ForTracker();
+  input.views = &others;
+  std::vector<PlanEntry> plan = PlanTrackSequence(input, SolveOptionsOf(request, views[0].inputs));
+  for (size_t v = 1; v < views.size(); ++v) {
+    for (PlanEntry& entry : plan) {
+      if (entry.what != "view " + std::to_string(v + 1)) continue;
+      entry.what = "view " + views[v].name;
+      entry.why = std::to_string(views[v].inputs.num_frames()) + " frames, " + entry.why;
+    }
+  }
+  const bool focal_known = views[0].inputs.camera_knowledge == CameraKnowledge::kKnown;
+  plan.insert(plan.begin(), {{"shared by " + std::to_string(views.size()) + " views", true,
+                              "shape, and the pose of every frame of the first"},
+                             {"view " + views[0].name, true,
+                              std::to_string(views[0].inputs.num_frames()) + " frames, its axes and clock are the " +
+                                  "track's" + (focal_known ? "" : "; focal length estimated")}});
+  return plan;
+}
+
+/// The fits of each view alone and of all together as one fraction.
+class ViewsProgress {
+ public:
+  ViewsProgress(size_t num_views, double share, const PipelineCallbacks& callbacks)
+      : fits_(static_cast<double>(num_views + 1)), share_(share), callbacks_(callbacks) {}
+  /// False if the caller cancelled.
+  bool Report(const TrackProgress& at) {
+    if (at.fraction < last_) done_ = std::min(done_ + 1, fits_ - 1);
+    last_ = at.fraction;
+    stage_ = at.stage;
+    cancelled_ = cancelled_ || !callbacks_.ReportProgress(at.stage, share_ * (done_ + at.fraction) / fits_);
+    return !cancelled_;
+  }
+  /// Reports the end. Throws Cancelled.
+  void End() const {
+    if (cancelled_ || !callbacks_.ReportProgress(stage_, share_)) throw Cancelled();
+  }
+
+ private:
+  double fits_, share_;
+  const PipelineCallbacks& callbacks_;
+  double done_ = 0, last_ = 0;
+  std::string stage_;
+  bool cancelled_ = false;
+};
+
+/// The camera of a view by the joint fit; `middle_s`: of the first view's clip.
+ViewReport ReportOnView(const ViewInputs& view, const ViewSummary& found, double middle_s) {
+  ViewReport report;
+  RigCamera& camera = report.camera;
+  if (view.clock.HasClock()) {
+    camera = view.clock;
+  } else {
+    camera.offset_s = found.offset_s;
+    camera.rate = found.rate;
+    camera.middle_s = middle_s;
+    camera.offset_sigma_s = found.offset_sigma_s;
+    camera.rate_sigma = found.rate_sigma;
+  }
+  camera.camera = found.camera;
+  camera.camera_from_rig = found.camera_from_scene;
+  camera.rotation_sigma_rad = found.rotation_sigma_rad;
+  camera.translation_sigma_m = found.translation_sigma_m;
+  camera.focal_log_sigma = found.focal_log_sigma;
+  report.frames = found.frames;
+  report.reprojection_median_px = found.reprojection_median_px;
+  return report;
+}
+
+/// The reason to doubt that the view shows the first one's motion; empty if there is none.
+std::string DoubtAbout(const ViewReport& view, const ViewReport& first) {
+  constexpr double kMaxResidualRatio = 2, kMaxFocalSigmas = 3;
+  const Camera& camera = view.camera.camera;
+  const FocalPrior prior = FocalPrior::ForImage(camera.width, camera.height);
+  if (view.camera.focal_log_sigma != 0 &&
+      std::abs(std::log(camera.fx) - prior.log_mean) > kMaxFocalSigmas * prior.log_sigma) {
+    return Concatenate("its focal length of ", std::lround(camera.fx), " px is unlikely in images of ", camera.width,
+                       "x", camera.height);
+  }
+  if (view.reprojection_median_px > kMaxResidualRatio * first.reprojection_median_px) {
+    return Concatenate("its residuals are ", std::lround(view.reprojection_median_px / first.reprojection_median_px),
+                       " times those of the first view");
+  }
+  return "";
+}
+
+std::vector<ViewReport> ReportOnViews(const std::vector<ViewInputs>& views, const TrackViewsResult& result) {
+  const TrackSequenceSummary& joint = result.joint.summary;
+  const std::vector<double>& times = views[0].inputs.timestamps();
+  const double middle_s = 0.5 * (times.front() + times.back());
+  std::vector<ViewReport> reports(1);
+  reports[0].camera.camera = result.joint.track.camera;
+  reports[0].camera.middle_s = middle_s;
+  reports[0].camera.focal_log_sigma = joint.focal_log_sigma;
+  reports[0].frames = views[0].inputs.num_frames();
+  reports[0].reprojection_median_px = joint.reprojection_median_px;
+  size_t used = 0;
+  for (size_t v = 1; v < views.size(); ++v) {
+    if (result.summary.used[v] != 0) {
+      reports.push_back(ReportOnView(views[v], joint.views[used++], middle_s));
+      reports.back().doubt = DoubtAbout(reports.back(), reports[0]);
+      continue;
+    }
+    const std::string& why = result.summary.alignment[v].why;
+    reports.emplace_back().left_out = why.empty() ? "the person is not seen there" : why;
+  }
+  for (size_t v = 0; v < views.size(); ++v) {
+    reports[v].camera.name = views[v].name;
+    reports[v].detections = views[v].detections;
+    reports[v].fps = views[v].fps;
+  }
+  return reports;
+}
+
+void WriteRigOfViews(const std::string& path, TrackReport* report) {
+  std::vector<RigCamera> rig;
+  for (const ViewReport& view : report->views) {
+    if (view.left_out.empty()) rig.push_back(view.camera);
+  }
+  WriteRig(path, rig);
+  report->outputs.push_back(path);
+}
+
+}  // namespace
+
+TrackReport TrackViewsClip(const TrackViewsRequest& request, const PipelineCallbacks& callbacks) {
+  CheckTrackViewsRequest(request);
+  CheckFilesOfViews(request);
+  StageClock clock;
+  clock.Begin("read");
+  const std::vector<ViewInputs> views = LoadViewInputs(request, callbacks);
+  const TrackInputs& first = views[0].inputs;
+  TrackReport report;
+  report.detections = views[0].detections;
+  report.num_frames = first.num_frames();
+  if (request.plan) {
+    report.solve.plan = PlanOfViews(request, views);
+    for (const PlanEntry& entry : PlanOutputs(request)) report.solve.plan.push_back(entry);
+    return report;
+  }
+  callbacks.Begin("tracking " + std::to_string(first.num_frames()) + " frames in " + std::to_string(views.size()) +
+                  " views");
+  const double solve_share = SolveShare(request);
+  clock.Begin(kSolveStage);
+  TrackSequenceOptions options = SolveOptionsOf(request, first);
+  ViewsProgress progress(views.size(), solve_share, callbacks);
+  options.progress = [&](const TrackProgress& at) { return progress.Report(at); };
+  TrackViewsResult result = TrackViews(ObservedViews(views), first.ForTracker(), options);
+  progress.End();
+  TrackSequenceSummary& joint = result.joint.summary;
+  joint.seconds.emplace_back("views alone", result.summary.seconds_alone);
+  if (joint.IsUsable()) {
+    if (!result.joint.track.world) result.joint.track.world = AssumedWorld(result.joint.track.joints);
+    report.views = ReportOnViews(views, result);
+  }
+  for (const ViewReport& view : report.views) {
+    if (!view.doubt.empty()) {
+      callbacks.Message("view " + view.camera.name + " may show another motion, or another person: " + view.doubt);
+    }
+  }
+  report.solve = std::move(joint);
+  if (report.solve.IsUsable()) WriteRigOfViews(RigFileOf(request), &report);
+  WriteResults(request, first, result.joint.track, solve_share, callbacks, &clock, &report);
+  return report;
+}
+
+}  // namespace bodyloom
