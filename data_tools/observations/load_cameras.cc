@@ -13,6 +13,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/json_reader.h"
 #include "data_tools/formats/printable.h"
+#include "data_tools/observations/camera_json.h"
 #include "data_tools/observations/pose2sim_toml.h"
 #include "geometry/base/check.h"
 #include "geometry/base/units.h"

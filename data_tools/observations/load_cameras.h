@@ -21,7 +21,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -59,9 +58,6 @@ CameraPose PoseFromJson(const JsonNode& rotation, const JsonNode& translation);
 /// std::runtime_error beginning with `where` and listing the cameras present.
 const NamedCamera& FindCamera(const std::vector<NamedCamera>& cameras, const std::string& view,
                               const std::string& where);
-
-/// Form 3's list of cameras, each with its pose.
-nlohmann::json CamerasToJson(const std::vector<NamedCamera>& cameras);
 
 /// Writes form 3 with a list of cameras.
 void WriteCameras(const std::string& path, const std::vector<NamedCamera>& cameras);

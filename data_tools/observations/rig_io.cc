@@ -8,6 +8,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/json_reader.h"
+#include "data_tools/observations/camera_json.h"
 #include "data_tools/observations/load_cameras.h"
 #include "geometry/base/check.h"
 
