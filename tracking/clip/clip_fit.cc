@@ -95,9 +95,9 @@ ClipFit::ClipFit(const TrackSequenceInput& given, const TrackSequenceOptions& op
 void ClipFit::CleanObservations() {
   if (input_.keypoints != nullptr) {
     keypoints_ = *input_.keypoints;
-    DropUnusable(&keypoints_);
-    num_impossible_ = RemoveOutlierFrames(&keypoints_);
-    summary_.num_swaps_repaired = RepairSwaps(&keypoints_);
+    const CleanedKeypoints cleaned = CleanKeypoints(&keypoints_);
+    num_impossible_ = cleaned.impossible_frames;
+    summary_.num_swaps_repaired = cleaned.swaps;
     input_.keypoints = &keypoints_;
   }
   if (input_.dense != nullptr && HasUnusable(*input_.dense)) {

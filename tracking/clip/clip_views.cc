@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "geometry/scene/time_bracket.h"
 #include "tracking/initialise/lifted_start.h"
 #include "tracking/initialise/view_observations.h"
 #include "tracking/problem/moving_camera.h"
@@ -68,16 +70,12 @@ Vector2d SlopeNear(const KeypointSequence& keypoints, int k, double t) {
 }  // namespace
 
 std::vector<SampledKeypoint> SampleKeypoints(const KeypointSequence& keypoints, double t) {
-  const std::vector<double>& times = keypoints.timestamps;
   std::vector<SampledKeypoint> result(keypoints.num_points());
-  const auto after = std::upper_bound(times.begin(), times.end(), t) - times.begin();
-  if (after == 0) return result;
-  const int a = static_cast<int>(after) - 1, b = std::min(a + 1, keypoints.num_frames() - 1);
-  const double gap = times[b] - times[a];
-  if (t > times[b] + 1e-9 || gap > kMaxBridge_s) return result;
-  const auto s = static_cast<float>(gap > 0 ? (t - times[a]) / gap : 0);
+  const std::optional<TimeBracket> at = FindTimeBracket(keypoints.timestamps, t);
+  if (!at || at->gap_s > kMaxBridge_s) return result;
+  const auto s = static_cast<float>(at->s);
   for (int k = 0; k < keypoints.num_points(); ++k) {
-    const Keypoint &p = keypoints.at(a, k), &q = keypoints.at(b, k);
+    const Keypoint &p = keypoints.at(at->before, k), &q = keypoints.at(at->after, k);
     if (!IsUsable(p) || !IsUsable(q)) continue;
     result[k].point = {(1 - s) * p.x + s * q.x, (1 - s) * p.y + s * q.y, std::min(p.confidence, q.confidence)};
     result[k].velocity_px_s = SlopeNear(keypoints, k, t);

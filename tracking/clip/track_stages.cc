@@ -33,9 +33,7 @@ Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& op
 bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem) {
   if (!ok_) return false;
   for (const FrameData& frame : problem->frames) {
-    frame.ForEachTerm([&](FrameTerm* term, const std::string&) {
-      term->BeginStage({stage.pull, stage.landmark_kernel});
-    });
+    frame.ForEachTerm([&](FrameTerm* term, int /*view*/) { term->BeginStage({stage.pull, stage.landmark_kernel}); });
   }
   if (solver == SequenceSolver::kChain && NumFarRows(*problem) > ChainProblem::kMaxFarRows) {
     solver = SequenceSolver::kCeres;

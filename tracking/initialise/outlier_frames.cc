@@ -9,6 +9,7 @@
 
 #include "tracking/initialise/body_rods.h"
 #include "tracking/initialise/swap_repair.h"
+#include "tracking/problem/input_checks.h"
 
 namespace bodyloom {
 namespace {
@@ -162,6 +163,14 @@ int RemoveOutlierFrames(KeypointSequence* keypoints) {
     good = t;
   }
   return dropped;
+}
+
+CleanedKeypoints CleanKeypoints(KeypointSequence* keypoints) {
+  DropUnusable(keypoints);
+  CleanedKeypoints cleaned;
+  cleaned.impossible_frames = RemoveOutlierFrames(keypoints);
+  cleaned.swaps = RepairSwaps(keypoints);
+  return cleaned;
 }
 
 }  // namespace bodyloom

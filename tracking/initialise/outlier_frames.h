@@ -23,6 +23,14 @@ namespace bodyloom {
 /// Linear in the number of frames. Returns the number of frames emptied.
 int RemoveOutlierFrames(KeypointSequence* keypoints);
 
+/// Result of CleanKeypoints().
+struct CleanedKeypoints {
+  int impossible_frames = 0;  ///< emptied by RemoveOutlierFrames()
+  int swaps = 0;              ///< left and right exchanged back by RepairSwaps()
+};
+/// Removes impossible landmarks (DropUnusable()) and outlier frames, and repairs swaps.
+CleanedKeypoints CleanKeypoints(KeypointSequence* keypoints);
+
 /// True if frame b of a sequence continues the earlier frame a, as defined above.
 bool ContinuesFrame(const KeypointSequence& keypoints, int a, int b);
 

@@ -5,7 +5,6 @@
 #include "tracking/initialise/initial_states.h"
 #include "tracking/initialise/outlier_frames.h"
 #include "tracking/initialise/swap_repair.h"
-#include "tracking/problem/input_checks.h"
 
 namespace bodyloom {
 
@@ -19,9 +18,7 @@ std::vector<ViewObservations> ObserveViews(const TrackSequenceInput& input, cons
   for (size_t v = 0; v < input.views->size(); ++v) {
     ViewObservations& view = views.emplace_back();
     view.keypoints = *(*input.views)[v].keypoints;
-    DropUnusable(&view.keypoints);
-    RemoveOutlierFrames(&view.keypoints);
-    RepairSwaps(&view.keypoints);
+    CleanKeypoints(&view.keypoints);
     if (!lifts) continue;
     const FrameLayout& local = *layout.views[v].local;
     view.lifted = LiftKeypoints(view.keypoints, local.camera, local.knowledge == CameraKnowledge::kKnown,

@@ -44,6 +44,10 @@ int NextRow(const FrameRows& rows) {
 
 }  // namespace
 
+std::string NameOfTerm(const FrameTerm& term, int view) {
+  return view < 0 ? term.name() : term.name() + ", view " + std::to_string(view + 2);
+}
+
 void FrameEvaluator::Begin(const FrameLayout& layout, const FrameData& data, const FrameState& state,
                            const SharedValues& shared, Mode mode, FrameResiduals* residuals) {
   const bool moves = data.camera_from_scene != nullptr;
@@ -97,7 +101,7 @@ void FrameEvaluator::EvaluateRows(const FrameLayout& layout, const FrameData& da
   rows->term_of_group.clear();
   rows->is_finite = true;
   int num_rows = 0;
-  data.ForEachTerm([&](const FrameTerm* term, const std::string&) {
+  data.ForEachTerm([&](const FrameTerm* term, int /*view*/) {
     if (!term->is_empty()) num_rows += term->is_compressed() ? layout.num_columns + 2 : term->num_rows();
   });
   if (rows->J.cols() != layout.num_columns || rows->J.rows() < num_rows) {

@@ -61,16 +61,18 @@ struct FrameData {
   [[nodiscard]] const Term& Get() const {
     return terms.Get<Term>();
   }
-  /// Calls f(term, name) for the terms of the list, then for those of the other views, whose names end with
-  /// ", view 2" and so on.
+  /// Calls f(term, view) for the terms of the list, with view −1, then for those of the other views.
   template <typename Function>
   void ForEachTerm(const Function& f) const {
-    for (const auto& term : terms) f(term.get(), term->name());
+    for (const auto& term : terms) f(term.get(), -1);
     for (const ViewTerms& view : views) {
-      for (const auto& term : view.terms) f(term.get(), term->name() + ", view " + std::to_string(view.view + 2));
+      for (const auto& term : view.terms) f(term.get(), view.view);
     }
   }
 };
+
+/// The term's name in the table of costs; of another view (its index) with ", view 2" and so on.
+std::string NameOfTerm(const FrameTerm& term, int view);
 
 /// A frame's residuals one by one: the groups of rows of its terms, in the order of FrameData::ForEachTerm(). A
 /// compressed term (FrameTerm::is_compressed) is one group of CompressedRows().

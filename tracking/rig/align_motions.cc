@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/rig/align_motions.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/time_bracket.h"
 
 namespace bodyloom {
 
@@ -48,15 +48,9 @@ Sampled Sample(const ViewMotion& motion, double begin, double step, int count) {
   result.centres.setZero(count, 3);
   result.known.setZero(count);
   result.squares.setZero(count);
-  const std::vector<double>& times = motion.timestamps;
+  MatrixX3d points;
   for (int i = 0; i < count; ++i) {
-    const double t = begin + i * step;
-    const auto after = std::upper_bound(times.begin(), times.end(), t) - times.begin();
-    if (after == 0 || t > times.back() + 1e-9) continue;
-    const auto a = static_cast<size_t>(after - 1), b = std::min(a + 1, times.size() - 1);
-    const double gap = times[b] - times[a], s = gap > 0 ? (t - times[a]) / gap : 0;
-    if (gap > kMaxStep_s || !motion.points[a].allFinite() || !motion.points[b].allFinite()) continue;
-    const MatrixX3d points = (1 - s) * motion.points[a] + s * motion.points[b];
+    if (!PointsAt(motion, begin + i * step, &points)) continue;
     result.centres.row(i) = points.colwise().mean();
     result.points.middleRows(i * K, K) = points.rowwise() - result.centres.row(i);
     result.squares[i] = result.points.middleRows(i * K, K).squaredNorm();
@@ -105,11 +99,9 @@ LagFit FitRotation(const Sampled& a, const Sampled& b, int lag, const Matrix3d& 
   fit.moments = static_cast<int>(known_a.dot(known_b));
   if (fit.moments == 0) return fit;
   const double sum = a.squares.segment(first, count).dot(known_b) + b.squares.segment(first + lag, count).dot(known_a);
-  const Eigen::JacobiSVD<Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3d sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1.0 : 1.0);
-  fit.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-  fit.squared =
-      std::max(0.0, sum - 2 * svd.singularValues().dot(sign)) / (static_cast<double>(fit.moments) * a.num_points);
+  fit.rotation = NearestRotation(products);
+  fit.squared = std::max(0.0, sum - 2 * fit.rotation.cwiseProduct(products).sum()) /
+                (static_cast<double>(fit.moments) * a.num_points);
   return fit;
 }
 
@@ -140,6 +132,15 @@ Vector3d TranslationOf(const Sampled& a, const Sampled& b, const Matrix3d& rotat
 }
 
 }  // namespace
+
+bool PointsAt(const ViewMotion& motion, double time, MatrixX3d* points) {
+  const std::optional<TimeBracket> at = FindTimeBracket(motion.timestamps, time);
+  if (!at || at->gap_s > kMaxStep_s) return false;
+  const MatrixX3d &a = motion.points[at->before], &b = motion.points[at->after];
+  if (!a.allFinite() || !b.allFinite()) return false;
+  *points = (1 - at->s) * a + at->s * b;
+  return true;
+}
 
 MotionAlignment AlignMotions(const ViewMotion& a, const ViewMotion& b) {
   for (const ViewMotion* motion : {&a, &b}) {

@@ -25,6 +25,9 @@ struct ViewMotion {
   std::vector<MatrixX3d> points;   ///< T of K×3 metres; not finite where the person is not known
 };
 
+/// The points at a moment, interpolated; false where they are not known, or not for 0.3 s around it.
+bool PointsAt(const ViewMotion& motion, double time, MatrixX3d* points);
+
 struct MotionAlignment {
   bool found = false;
   std::string why;  ///< the reason when it is not

@@ -10,28 +10,18 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kAgreementStep_s = 1.0 / 15, kLongestHidden_s = 0.3;
-
-/// Points at a time, interpolated; false where they are not known.
-bool PointsAt(const ViewMotion& motion, double time, MatrixX3d* points) {
-  const std::vector<double>& times = motion.timestamps;
-  const auto after = std::upper_bound(times.begin(), times.end(), time) - times.begin();
-  if (after == 0 || time > times.back()) return false;
-  const auto a = static_cast<size_t>(after - 1), b = std::min(a + 1, times.size() - 1);
-  const double gap = times[b] - times[a], s = gap > 0 ? (time - times[a]) / gap : 0;
-  if (gap > kLongestHidden_s || !motion.points[a].allFinite() || !motion.points[b].allFinite()) return false;
-  *points = (1 - s) * motion.points[a] + s * motion.points[b];
-  return true;
-}
+constexpr double kAgreementStep_s = 1.0 / 15;
 
 /// Greedy matching of people under a hypothesis.
 MatchedViews MatchUnder(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other,
                         const MotionAlignment& alignment) {
   std::vector<std::tuple<double, int, int>> pairs;
+  std::vector<std::vector<MotionAgreement>> agreements(first.size(), std::vector<MotionAgreement>(other.size()));
   for (size_t i = 0; i < first.size(); ++i) {
     for (size_t j = 0; j < other.size(); ++j) {
       if (first[i].points.empty() || other[j].points.empty()) continue;
-      const MotionAgreement agreement = AgreementOf(first[i], other[j], alignment.b_from_a, alignment.offset_s);
+      MotionAgreement& agreement = agreements[i][j];
+      agreement = AgreementOf(first[i], other[j], alignment.b_from_a, alignment.offset_s);
       const double share = agreement.distance_m / kMaxMotionDistance_m, apart = agreement.apart_m / kMaxApart_m;
       if (agreement.overlap_s <= 0 || share >= 1 || apart >= 1) continue;
       pairs.emplace_back(agreement.overlap_s * (1 - share * share) * (1 - apart * apart), static_cast<int>(i),
@@ -41,11 +31,13 @@ MatchedViews MatchUnder(const std::vector<ViewMotion>& first, const std::vector<
   std::sort(pairs.rbegin(), pairs.rend());
   MatchedViews matched;
   matched.person_of.assign(first.size(), -1);
+  matched.agreement.resize(first.size());
   matched.alignment = alignment;
   std::vector<char> taken(other.size(), 0);
   for (const auto& [score, i, j] : pairs) {
     if (matched.person_of[i] >= 0 || taken[j] != 0) continue;
     matched.person_of[i] = j;
+    matched.agreement[i] = agreements[i][j];
     taken[j] = 1;
     matched.score += score;
   }
@@ -79,6 +71,7 @@ MotionAgreement AgreementOf(const ViewMotion& a, const ViewMotion& b, const Came
 MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other) {
   MatchedViews best;
   best.person_of.assign(first.size(), -1);
+  best.agreement.resize(first.size());
   for (const ViewMotion& a : first) {
     for (const ViewMotion& b : other) {
       if (a.points.empty() || b.points.empty()) continue;

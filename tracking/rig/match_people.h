@@ -23,9 +23,10 @@ MotionAgreement AgreementOf(const ViewMotion& a, const ViewMotion& b, const Came
 
 /// People of a view matched with those of another.
 struct MatchedViews {
-  std::vector<int> person_of;  ///< of each person of the first view: the one in the other view, −1: none
-  MotionAlignment alignment;   ///< of the pair that tells it best; not found: no pair moves alike
-  double score = 0;            ///< of all matched people: Σ overlap (1 − (distance / limit)²)
+  std::vector<int> person_of;              ///< of each person of the first view: the one in the other view, −1: none
+  std::vector<MotionAgreement> agreement;  ///< of each of them with that person
+  MotionAlignment alignment;               ///< of the pair that tells it best; not found: no pair moves alike
+  double score = 0;                        ///< of all matched people: Σ overlap (1 − (distance / limit)²)
 };
 MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other);
 

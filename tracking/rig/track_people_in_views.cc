@@ -24,17 +24,12 @@ std::vector<ObservedView> ViewsOf(const std::vector<ObservedScene>& scenes, cons
 }
 
 /// Agreement of a person's views with the first one, in sum.
-double ScoreOf(const TrackPeopleInViewsResult& result, const std::vector<std::vector<ViewMotion>>& motions,
-               int person) {
+double ScoreOf(const std::vector<MatchedViews>& views, size_t person) {
   double score = 0;
-  for (size_t v = 1; v < motions.size(); ++v) {
-    const int there = result.person_in_view[person][v];
-    if (there < 0) continue;
-    const MotionAlignment& alignment = result.views[v - 1].alignment;
-    const MotionAgreement agreement =
-        AgreementOf(motions[0][person], motions[v][there], alignment.b_from_a, alignment.offset_s);
-    const double share = agreement.distance_m / kMaxMotionDistance_m;
-    score += agreement.overlap_s * (1 - share * share);
+  for (const MatchedViews& view : views) {
+    if (view.person_of[person] < 0) continue;
+    const double share = view.agreement[person].distance_m / kMaxMotionDistance_m;
+    score += view.agreement[person].overlap_s * (1 - share * share);
   }
   return score;
 }
@@ -65,7 +60,7 @@ TrackPeopleInViewsResult TrackPeopleInViews(const std::vector<ObservedScene>& sc
   }
   double best = 0;
   for (size_t p = 0; p < P; ++p) {
-    const double score = motions[0][p].points.empty() ? 0 : ScoreOf(result, motions, static_cast<int>(p));
+    const double score = ScoreOf(result.views, p);
     if (score > best) {
       best = score;
       result.leader = static_cast<int>(p);

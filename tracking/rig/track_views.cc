@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "geometry/base/check.h"
@@ -11,6 +12,7 @@
 #include "geometry/body/posed_body.h"
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
+#include "geometry/scene/time_bracket.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/problem/moving_camera.h"
 
@@ -18,8 +20,6 @@ namespace bodyloom {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 /// Options of a fit alone, which only gives a start.
 TrackSequenceOptions Alone(TrackSequenceOptions options, const ObservedView& view) {
@@ -31,55 +31,61 @@ TrackSequenceOptions Alone(TrackSequenceOptions options, const ObservedView& vie
   return options;
 }
 
+/// A view's camera and clock by those of its neighbour in the tree.
+struct PlacedView {
+  CameraPose from_first;
+  double offset_s = 0, offset_sigma_s = 0;
+};
+
 /// The tree of best agreement from the first view: each view's neighbour, nearer to the first, and the alignment that
-/// takes the neighbour's frame and clock to its own. Views that agree with none keep neighbour −1.
-void FindTree(const std::vector<ViewMotion>& motions, TrackViewsSummary* summary) {
+/// takes the neighbour's frame and clock to its own. Views that agree with none keep neighbour −1. Returns where the
+/// tree places each view that is used.
+std::vector<PlacedView> FindTree(const std::vector<ViewMotion>& motions, TrackViewsSummary* summary) {
   const int V = static_cast<int>(motions.size());
   summary->alignment.assign(V, MotionAlignment());
   summary->neighbour.assign(V, -1);
   summary->used.assign(V, 0);
   summary->used[0] = 1;
-  std::vector<std::vector<MotionAlignment>> pairs(V, std::vector<MotionAlignment>(V));
-  const auto align = [&](int a, int b) { pairs[a][b] = AlignMotions(motions[a], motions[b]); };
+  std::vector<PlacedView> placed(V);
+  std::vector<std::vector<std::optional<MotionAlignment>>> pairs(V, std::vector<std::optional<MotionAlignment>>(V));
   for (int added = 0; added + 1 < V; ++added) {
     int from = -1, to = -1;
     for (int a = 0; a < V; ++a) {
-      if (summary->used[a] == 0 || motions[a].points.empty()) continue;
+      if (summary->used[a] == 0) continue;
       for (int b = 0; b < V; ++b) {
         if (summary->used[b] != 0 || motions[b].points.empty()) continue;
-        if (pairs[a][b].score == 0 && pairs[a][b].why.empty()) align(a, b);
-        if (!pairs[a][b].found) continue;
-        if (from < 0 || pairs[a][b].distance_m < pairs[from][to].distance_m) {
+        if (!pairs[a][b]) pairs[a][b] = AlignMotions(motions[a], motions[b]);
+        if (!pairs[a][b]->found) continue;
+        if (from < 0 || pairs[a][b]->distance_m < pairs[from][to]->distance_m) {
           from = a;
           to = b;
         }
       }
     }
     if (from < 0) break;
+    const MotionAlignment& alignment = *pairs[from][to];
     summary->used[to] = 1;
     summary->neighbour[to] = from;
-    summary->alignment[to] = pairs[from][to];
+    summary->alignment[to] = alignment;
+    placed[to] = {Compose(alignment.b_from_a, placed[from].from_first), placed[from].offset_s + alignment.offset_s,
+                  std::hypot(placed[from].offset_sigma_s, alignment.offset_sigma_s)};
   }
   for (int v = 1; v < V; ++v) {
-    if (summary->used[v] == 0) summary->alignment[v] = pairs[0][v];
+    if (summary->used[v] == 0 && pairs[0][v]) summary->alignment[v] = *pairs[0][v];
   }
+  return placed;
 }
 
 FrameState StateAt(const BodyModel& body, const Track& track, double time, bool* known) {
-  const std::vector<double>& times = track.motion.timestamps;
-  const auto after = std::upper_bound(times.begin(), times.end(), time) - times.begin();
-  *known = false;
-  if (after == 0 || time > times.back() + 0.1) return {};
-  const int a = static_cast<int>(after) - 1, b = std::min(a + 1, track.num_frames() - 1);
-  if (!track.HasResult(a) || !track.HasResult(b)) return {};
+  const std::optional<TimeBracket> at = FindTimeBracket(track.motion.timestamps, time, 0.1);
+  *known = at && track.HasResult(at->before) && track.HasResult(at->after);
+  if (!*known) return {};
   const auto state = [&](int t) {
     const BodyPose pose =
         PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), track.motion.trans.row(t).transpose());
     return FrameState{pose.rotations, pose.trans};
   };
-  *known = true;
-  const double gap = times[b] - times[a];
-  return InterpolateStates(state(a), state(b), gap > 0 ? (time - times[a]) / gap : 0);
+  return InterpolateStates(state(at->before), state(at->after), at->s);
 }
 
 /// Poses of the first view's frames: the mean of all views that show the person, in the first view's frame. Frames that
@@ -87,6 +93,8 @@ FrameState StateAt(const BodyModel& body, const Track& track, double time, bool*
 TrackStart AveragePoses(const BodyModel& body, const std::vector<TrackSequenceResult>& alone,
                         const std::vector<ViewInput>& views, const std::vector<int>& index) {
   TrackStart start;
+  FrameLayout layout;
+  layout.model = &body;
   const Track& first = alone[0].track;
   const double middle = 0.5 * (first.motion.timestamps.front() + first.motion.timestamps.back());
   start.betas = first.motion.betas;
@@ -103,8 +111,6 @@ TrackStart AveragePoses(const BodyModel& body, const std::vector<TrackSequenceRe
       const double there = time + views[i].offset_s + views[i].rate * (time - middle);
       FrameState state = StateAt(body, alone[index[i]].track, there, &known);
       if (!known) continue;
-      FrameLayout layout;
-      layout.model = &body;
       states.push_back(StateInCamera(layout, Inverse(views[i].camera_from_scene), start.betas, std::move(state)));
     }
     FrameState mean;
@@ -196,7 +202,7 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
     joint.message = "the first view: " + result.alone[0].summary.message;
     return result;
   }
-  FindTree(motions, &summary);
+  const std::vector<PlacedView> placed = FindTree(motions, &summary);
   const bool any = std::any_of(summary.used.begin() + 1, summary.used.end(), [](char used) { return used != 0; });
   if (!any) {
     joint.message = "no other view shows the motion of the first: " +
@@ -204,25 +210,10 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
     return result;
   }
 
-  // Poses and offsets along the tree, whose order is that of the neighbours.
-  std::vector<CameraPose> from_first(views.size());
-  std::vector<double> offset(views.size(), 0.0), sigma(views.size(), 0.0);
-  std::vector<char> placed(views.size(), 0);
-  placed[0] = 1;
-  for (size_t round = 1; round < views.size(); ++round) {
-    for (size_t v = 1; v < views.size(); ++v) {
-      const int n = summary.neighbour[v];
-      if (placed[v] != 0 || n < 0 || placed[n] == 0) continue;
-      from_first[v] = Compose(summary.alignment[v].b_from_a, from_first[n]);
-      offset[v] = offset[n] + summary.alignment[v].offset_s;
-      sigma[v] = std::hypot(sigma[n], summary.alignment[v].offset_sigma_s);
-      placed[v] = 1;
-    }
-  }
   std::vector<ViewInput> others;
   std::vector<int> index;
   for (size_t v = 1; v < views.size(); ++v) {
-    if (placed[v] == 0) continue;
+    if (summary.used[v] == 0) continue;
     const ObservedView& view = views[v];
     ViewInput& other = others.emplace_back();
     other.keypoints = view.keypoints;
@@ -232,10 +223,10 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
     other.focal_prior = view.focal_prior;
     other.pose_known = view.camera_from_rig.has_value();
     other.camera_from_scene =
-        other.pose_known ? Compose(*view.camera_from_rig, Inverse(*views[0].camera_from_rig)) : from_first[v];
+        other.pose_known ? Compose(*view.camera_from_rig, Inverse(*views[0].camera_from_rig)) : placed[v].from_first;
     other.clock_known = view.offset_s.has_value();
-    other.offset_s = view.offset_s.value_or(offset[v]);
-    other.offset_sigma_s = std::max(0.02, 3 * sigma[v]);
+    other.offset_s = view.offset_s.value_or(placed[v].offset_s);
+    other.offset_sigma_s = std::max(0.02, 3 * placed[v].offset_sigma_s);
     index.push_back(static_cast<int>(v));
   }
   TrackStart start = AveragePoses(*common.body, result.alone, others, index);

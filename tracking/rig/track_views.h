@@ -30,8 +30,8 @@ struct ObservedView {
 };
 
 struct TrackViewsSummary {
-  std::vector<MotionAlignment> alignment;  ///< of each view but the first with its neighbour in the tree
-  std::vector<int> neighbour;              ///< of each view but the first
+  std::vector<MotionAlignment> alignment;  ///< of each view with its neighbour in the tree; the first has none
+  std::vector<int> neighbour;              ///< of each view; −1: the first, and views that are not used
   std::vector<char> used;                  ///< of each view: 0 where it does not show the same motion
   double seconds_alone = 0, seconds = 0;
 };

@@ -194,8 +194,8 @@ class CeresProblem::Builder {
           m_.batch.Add(layout_, source_.frames[t], source_.states[t], source_, all);
       std::vector<int> term_of_list;
       if (!m_.compress) {
-        source_.frames[t].ForEachTerm([&](const FrameTerm* term, const std::string& name) {
-          term_of_list.push_back(term->is_empty() ? -1 : m_.Term(name));
+        source_.frames[t].ForEachTerm([&](const FrameTerm* term, int view) {
+          term_of_list.push_back(term->is_empty() ? -1 : m_.Term(NameOfTerm(*term, view)));
         });
       }
       for (FrameBatch::Entry& entry : entries) {

@@ -49,9 +49,9 @@ class CostTable {
     });
     for (size_t t = 0; t < T_; ++t) {
       size_t i = 0;
-      problem_.frames[t].ForEachTerm([&](const FrameTerm* term, const std::string& name) {
+      problem_.frames[t].ForEachTerm([&](const FrameTerm* term, int view) {
         const double cost = costs[t][i++];
-        if (!term->is_empty()) Of(name).of_frame[static_cast<Eigen::Index>(t)] += cost;
+        if (!term->is_empty()) Of(NameOfTerm(*term, view)).of_frame[static_cast<Eigen::Index>(t)] += cost;
       });
     }
     for (const FrameResiduals& frame : of_frame) {

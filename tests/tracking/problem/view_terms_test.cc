@@ -9,6 +9,7 @@
 
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
+#include "tests/support/ceres_checks.h"
 #include "tests/support/sequence_scene.h"
 #include "tracking/problem/moving_camera.h"
 #include "tracking/solvers/ceres_problem.h"
@@ -139,13 +140,7 @@ TEST(ViewTerms, CeresHasTheSameCostGradientAndTerms) {
   ASSERT_NE(in_view, table.end());
   for (const bool compress : {false, true}) {
     CeresProblem ceres(problem, {.num_threads = 2, .compress_frames = compress});
-    double cost = 0;
-    std::vector<double> gradient;
-    ASSERT_TRUE(ceres.problem().Evaluate({}, &cost, nullptr, &gradient, nullptr));
-    EXPECT_NEAR(cost, expected, 1e-10 * expected);
-    ASSERT_EQ(gradient.size(), static_cast<size_t>(expected_gradient.size()));
-    const VectorXd difference = Eigen::Map<VectorXd>(gradient.data(), expected_gradient.size()) - expected_gradient;
-    EXPECT_LE(difference.norm(), 1e-9 * expected_gradient.norm());
+    ExpectCostAndGradient(&ceres.problem(), expected, expected_gradient);
     EXPECT_EQ(ceres.NameOf(ceres.view_blocks()[3]), "clock of view 2");
     if (compress) continue;
     const auto at = std::find(ceres.terms().begin(), ceres.terms().end(), "2D joints, view 2");

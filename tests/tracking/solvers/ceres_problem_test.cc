@@ -17,6 +17,7 @@
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/scene/camera_path.h"
+#include "tests/support/ceres_checks.h"
 #include "tests/support/sequence_scene.h"
 #include "tracking/build_ceres_problem.h"
 #include "tracking/clip/clip_fit.h"
@@ -70,13 +71,7 @@ TEST(CeresProblem, CostAndGradientAreTheChains) {
       EXPECT_NEAR(by_term, expected, 1e-10 * expected);
       for (const bool compress : {false, true}) {
         CeresProblem ceres(problem, {.num_threads = 2, .compress_frames = compress});
-        double cost = 0;
-        std::vector<double> gradient;
-        ASSERT_TRUE(ceres.problem().Evaluate({}, &cost, nullptr, &gradient, nullptr));
-        EXPECT_NEAR(cost, expected, 1e-10 * expected);
-        ASSERT_EQ(gradient.size(), static_cast<size_t>(expected_gradient.size()));
-        const VectorXd difference = Eigen::Map<VectorXd>(gradient.data(), expected_gradient.size()) - expected_gradient;
-        EXPECT_LE(difference.norm(), 1e-9 * expected_gradient.norm());
+        ExpectCostAndGradient(&ceres.problem(), expected, expected_gradient);
         EXPECT_NEAR(SumOf(ceres.CostByTerm()), expected, 1e-10 * expected);
       }
     }
