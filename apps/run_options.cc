@@ -7,9 +7,11 @@
 
 namespace bodyloom {
 
-void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
+namespace {
+
+/// All but those of the videos and their views.
+void AddOtherRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
   TrackSettings& track = request->track;
-  app.add_option("VIDEO,--video", track.video, "the video, or a folder of images")->required()->type_name("PATH");
   app.add_option("--people", request->max_people, "at most so many: the largest and longest in view (0: everybody)")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
@@ -22,7 +24,6 @@ void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
   app.add_option("--min-confidence", track.min_confidence, "landmarks below (0 to 1) count as missing")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  app.add_option("--view", track.view, "camera of a calibration that holds several")->type_name("NAME");
   app.add_flag("--masks", request->masks, "write each person's mask too: mask_0.npz, mask_1.npz ...");
   app.add_flag(
       "--coarse-masks", request->coarse_masks,
@@ -32,6 +33,35 @@ void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
   AddCalibrationOptions(app, &track);
   AddLearnedOptions(app, &track);
   AddSolveOptions(app, &track);
+}
+
+}  // namespace
+
+void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
+  TrackSettings& track = request->track;
+  app.add_option("VIDEO,--video", track.video, "the video, or a folder of images")->required()->type_name("PATH");
+  app.add_option("--view", track.view, "camera of a calibration that holds several")->type_name("NAME");
+  AddOtherRunOptions(app, request);
+}
+
+void AddRunVideosOptions(CLI::App& app, TrackPeopleInVideosRequest* request) {
+  app.add_option("VIDEO,--video", request->videos,
+                 "the video, or a folder of images; several of cameras that filmed the same people and stood still: "
+                 "the tracks are in the first one's frame and time")
+      ->required()
+      ->type_name("PATH ...");
+  app.add_option("--view", request->views,
+                 "camera of a calibration that holds several; with several videos a name for each, as left,right")
+      ->type_name("NAME,...")
+      ->allow_extra_args(false)
+      ->delimiter(',');
+  app.add_option_function<std::string>(
+         "--known", [request](const std::string& word) { request->known = KnownOfRigFromString(word); },
+         "several videos: how much of --cameras to use: intrinsics, also poses, also the clocks of a rig.json; the "
+         "rest is estimated")
+      ->default_str(ToString(request->known))
+      ->check(CLI::IsMember({"intrinsics", "poses", "clocks"}));
+  AddOtherRunOptions(app, request);
 }
 
 }  // namespace bodyloom

@@ -8,7 +8,7 @@
 #include "apps/run_options.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
-#include "pipelines/track/track_people_clip.h"
+#include "pipelines/track/track_people_in_videos.h"
 
 namespace bodyloom {
 namespace {
@@ -16,10 +16,13 @@ namespace {
 constexpr const char* kRunFooter =
     "Writes detections.npz, person_0.npz, person_1.npz ... (0 is the largest and longest in view), overlay.mp4 and\n"
     "summary.json into the folder. Everybody is tracked in one camera frame, with one focal length and one ground.\n"
+    "With several videos of the same people also rig.json, and detections_NAME.npz and overlay_NAME.mp4 of each.\n"
     "Examples:\n"
     "  bodyloom run clip.mp4 --out results\n"
     "  the man in front alone, faster, and from his side:\n"
     "    bodyloom run clip.mp4 --out results --people 1 --detector full --side-view\n"
+    "  two phones on tripods, nothing known of them:\n"
+    "    bodyloom run left.mp4 right.mp4 --out results --report\n"
     "  seconds 3 to 8 of a calibrated camera:\n"
     "    bodyloom run clip.mp4 --out results --cameras calibration.json --view cam1 --from 3 --to 8\n"
     "then\n"
@@ -30,20 +33,23 @@ constexpr const char* kRunFooter =
 void AddRunVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand("run", "A raw video to everybody in it: detected, linked, tracked, drawn");
   verb->footer(std::string(kRunFooter) + kExitCodeHelp);
-  auto request = std::make_shared<TrackPeopleClipRequest>();
+  auto request = std::make_shared<TrackPeopleInVideosRequest>();
   auto quiet = std::make_shared<bool>(false);
   auto no_overlay = std::make_shared<bool>(false);
   verb->add_option("--out", request->out, "folder for the results, made when it is not there")
       ->required()
       ->type_name("DIR");
-  AddRunOptions(*verb, request.get());
+  AddRunVideosOptions(*verb, request.get());
   verb->add_flag("--report", request->report, "write report.html too: video, bodies in 3D and a timeline in one page");
   verb->add_flag("--no-overlay", *no_overlay, "draw no video");
   verb->add_flag("--quiet", *quiet, "no progress and no summary on the screen");
   verb->callback([=] {
     *action = [=] {
       request->overlay = !*no_overlay;
-      const TrackPeopleReport report = TrackPeopleClip(*request, CommandCallbacks(*quiet));
+      const PipelineCallbacks callbacks = CommandCallbacks(*quiet);
+      const TrackPeopleReport report = HasSeveralVideos(*request)
+                                           ? TrackPeopleInVideos(*request, callbacks)
+                                           : TrackPeopleClip(RequestOfOneVideo(*request), callbacks);
       if (!*quiet) std::cout << ToText(report);
     };
   });

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "data_tools/motion/track_io.h"
@@ -16,6 +17,7 @@
 #include "pipelines/detect/detect_people.h"
 #include "pipelines/files.h"
 #include "pipelines/track/track_people_clip.h"
+#include "pipelines/track/track_people_in_videos.h"
 #include "python/bindings.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
@@ -29,7 +31,9 @@ largest, best seen and longest in view first, all in one camera frame with one f
 begins with the first frame that shows the person and has the video's times; a person in whom nothing can be tracked
 is left out.
 
-video           a video, or a folder of images, of which fps tells the rate
+video           a video, or a folder of images, of which fps tells the rate; a list of several of cameras that stood
+                still and filmed the same people: the tracks are in the first one's frame and time, out is needed and
+                gets rig.json too, camera may be a file of all, of which known says how much to use
 out             folder that gets what the command writes: detections.npz, person_0.npz, ..., summary.json and, as
                 asked for, overlay (a video, with side_view from the side too), masks (coarse_masks: as the network
                 gives them), report (a page); None: no file
@@ -57,6 +61,15 @@ std::shared_ptr<TrackObject> ObjectOf(Track track, const std::string& name, cons
   return object;
 }
 
+std::vector<std::shared_ptr<TrackObject>> ReadTracks(const TrackPeopleReport& report,
+                                                     const std::shared_ptr<const BodyModel>& body) {
+  std::vector<std::shared_ptr<TrackObject>> tracks;
+  for (const TrackedPerson& person : report.people) {
+    if (!person.track.empty()) tracks.push_back(ObjectOf(ReadTrack(person.track), person.track, person.solve, body));
+  }
+  return tracks;
+}
+
 std::vector<std::shared_ptr<TrackObject>> RunPeople(const TrackPeopleClipRequest& request, GivenInMemory given,
                                                     const py::object& progress) {
   const std::shared_ptr<const BodyModel> body = BodyToKeep(request.track, &given);
@@ -74,10 +87,18 @@ std::vector<std::shared_ptr<TrackObject>> RunPeople(const TrackPeopleClipRequest
   }
   const TrackPeopleReport report =
       python.Run([&](const PipelineCallbacks& callbacks) { return TrackPeopleClip(request, callbacks, given); });
-  for (const TrackedPerson& person : report.people) {
-    if (!person.track.empty()) tracks.push_back(ObjectOf(ReadTrack(person.track), person.track, person.solve, body));
-  }
-  return tracks;
+  return ReadTracks(report, body);
+}
+
+std::vector<std::shared_ptr<TrackObject>> RunPeopleInVideos(const TrackPeopleInVideosRequest& request,
+                                                            GivenInMemory given, const py::object& progress) {
+  BODYLOOM_CHECK(!request.out.empty(),
+                 "several videos: their tracks and cameras are written into a folder, expected out");
+  BODYLOOM_CHECK(!given.camera, "camera: with several videos expected a file of all cameras");
+  const std::shared_ptr<const BodyModel> body = BodyToKeep(request.track, &given);
+  const TrackPeopleReport report = PythonCallbacks(progress).Run(
+      [&](const PipelineCallbacks& callbacks) { return TrackPeopleInVideos(request, callbacks, given.body); });
+  return ReadTracks(report, body);
 }
 
 std::vector<std::shared_ptr<KeypointSequence>> Detect(const DetectPeopleRequest& request, const py::object& progress) {
@@ -96,31 +117,30 @@ std::vector<std::shared_ptr<KeypointSequence>> Detect(const DetectPeopleRequest&
 void BindPeople(py::module_& module) {
   module.def(
       "run",
-      [](const Path& video, const std::optional<Path>& out, int people, std::optional<int> person, double min_seconds,
-         std::optional<double> fps, double min_confidence, const std::string& view,
-         const std::optional<CameraArgument>& camera, std::optional<double> focal_px, std::optional<double> focal_35mm,
-         const std::optional<BodyArgument>& body, std::optional<double> stature_m, const std::optional<Path>& prior,
-         const std::optional<Path>& lifter, const std::string& detector, const std::optional<Path>& pose_model,
-         const std::optional<Path>& box_model, const std::optional<Path>& models, std::optional<double> detect_rate,
-         bool mask, double begin_s, std::optional<double> end_s, const std::string& solver, int threads,
-         bool uncertainty, bool ground, bool overlay, bool side_view, bool masks, bool coarse_masks, bool report,
-         const py::object& progress) {
+      [](const std::variant<Path, std::vector<Path>>& video, const std::optional<Path>& out, int people,
+         std::optional<int> person, double min_seconds, std::optional<double> fps, double min_confidence,
+         const std::string& view, const std::string& known, const std::optional<CameraArgument>& camera,
+         std::optional<double> focal_px, std::optional<double> focal_35mm, const std::optional<BodyArgument>& body,
+         std::optional<double> stature_m, const std::optional<Path>& prior, const std::optional<Path>& lifter,
+         const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
+         const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
+         std::optional<double> end_s, const std::string& solver, int threads, bool uncertainty, bool ground,
+         bool overlay, bool side_view, bool masks, bool coarse_masks, bool report, const py::object& progress) {
         BODYLOOM_CHECK(people >= 0 && person.value_or(0) >= 0 && min_seconds >= 0,
                        "people, person, min_seconds: expected 0 or more");
         BODYLOOM_CHECK(out || !(side_view || masks || report),
                        "side_view, masks, report: are written into a folder, expected out");
         CheckThreads(threads);
-        TrackPeopleClipRequest request;
+        TrackPeopleInVideosRequest request;
         GivenInMemory given;
         request.out = TextOf(out);
+        request.known = KnownOfRigFromString(known);
         request.max_people = people, request.person = person, request.min_seconds = min_seconds;
         request.overlay = overlay, request.report = report;
         request.masks = masks, request.coarse_masks = coarse_masks;
         TrackSettings& track = request.track;
-        track.video = video.string();
         track.fps = PositiveOr0(fps, "fps");
         track.min_confidence = min_confidence;
-        track.view = view;
         track.focal_px = PositiveOr0(focal_px, "focal_px");
         track.focal_35mm_mm = PositiveOr0(focal_35mm, "focal_35mm");
         track.stature_m = PositiveOr0(stature_m, "stature_m");
@@ -136,16 +156,23 @@ void BindPeople(py::module_& module) {
         if (!ground) track.solve.ground = GroundOptions::Off();
         TakeCamera(camera, &track, &given);
         TakeBody(body, &track, &given);
-        return RunPeople(request, std::move(given), progress);
+        if (const auto* videos = std::get_if<std::vector<Path>>(&video)) {
+          for (const Path& one : *videos) request.videos.push_back(one.string());
+        } else {
+          request.videos = {std::get<Path>(video).string()};
+        }
+        if (HasSeveralVideos(request)) return RunPeopleInVideos(request, std::move(given), progress);
+        if (!view.empty()) request.views = {view};
+        return RunPeople(RequestOfOneVideo(request), std::move(given), progress);
       },
       py::arg("video"), py::kw_only(), py::arg("out") = py::none(), py::arg("people") = 0,
       py::arg("person") = py::none(), py::arg("min_seconds") = 0.5, py::arg("fps") = py::none(),
-      py::arg("min_confidence") = 0.0, py::arg("view") = "", py::arg("camera") = py::none(),
-      py::arg("focal_px") = py::none(), py::arg("focal_35mm") = py::none(), py::arg("body") = py::none(),
-      py::arg("stature_m") = py::none(), py::arg("prior") = py::none(), py::arg("lifter") = py::none(),
-      py::arg("detector") = "heavy", py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(),
-      py::arg("models") = py::none(), py::arg("detect_rate") = py::none(), py::arg("mask") = true,
-      py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(),
+      py::arg("min_confidence") = 0.0, py::arg("view") = "", py::arg("known") = ToString(KnownOfRig::kClocks),
+      py::arg("camera") = py::none(), py::arg("focal_px") = py::none(), py::arg("focal_35mm") = py::none(),
+      py::arg("body") = py::none(), py::arg("stature_m") = py::none(), py::arg("prior") = py::none(),
+      py::arg("lifter") = py::none(), py::arg("detector") = "heavy", py::arg("pose_model") = py::none(),
+      py::arg("box_model") = py::none(), py::arg("models") = py::none(), py::arg("detect_rate") = py::none(),
+      py::arg("mask") = true, py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(),
       py::arg("solver") = ToString(TrackSequenceOptions().solver), py::arg("threads") = 0,
       py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true, py::arg("side_view") = false,
       py::arg("masks") = false, py::arg("coarse_masks") = false, py::arg("report") = false,

@@ -4,9 +4,10 @@
 //
 // The page holds, by id of its <script> elements:
 //   clip   JSON: seconds (one a frame, from the clip's start), people [{name, joints, status, residual_px, sigma_mm}],
-//          world_from_camera (3x4, rows), K (3x3), image_size, fps, and of a camera that moves cameras: such rows a frame
+//          world_from_camera (3x4, rows), K (3x3), image_size, fps, and of a camera that moves cameras: such rows a frame,
+//          and of further cameras, which stand still, views [{world_from_camera, K, image_size}]
 //   glb    the scene as base64 of a .glb
-//   video  base64 of an .mp4 with one image per frame at a constant fps, or empty
+//   video  base64 of an .mp4 with one image per frame at a constant fps, or empty; video-1, video-2 ...: of the views
 // and elements with the ids used below. A fragment "#frame=30&view=side&texture=off" opens it there; "#measure" shows the frame rate.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -29,6 +30,8 @@ const bytesOf = (id) => {
 const clip = JSON.parse(element('clip').textContent);
 const wishes = new URLSearchParams(location.hash.slice(1));
 const frames = clip.seconds.length;
+// Cameras by the end of their elements' ids: "" the first, "-1", "-2" ... the further ones.
+const cameras = [clip, ...(clip.views || [])].map((camera, v) => ({ ...camera, end: v === 0 ? '' : `-${v}` }));
 
 /// The last frame that has begun at `second`.
 function frameAt(second) {
@@ -92,7 +95,7 @@ class Stage {
     }
     if (this.bodies.every(({ texture }) => !texture)) element('show-texture').parentElement.style.display = 'none';
     this.people = clip.people.map((person, index) => this.addJoints(gltf.scene, person, index));
-    this.addFrustum();
+    this.addFrusta();
     this.holdCentre(0);
     this.view(wishes.get('view') || 'front');
   }
@@ -112,32 +115,34 @@ class Stage {
     });
   }
 
-  addFrustum() {
-    if (!clip.K || !clip.image_size) return;
-    const [width, height] = clip.image_size;
-    const [[fx, , cx], [, fy, cy]] = clip.K;
-    const depth = 0.6;
-    const corner = (u, v) => new THREE.Vector3((u - cx) / fx * depth, (v - cy) / fy * depth, depth);
-    const eye = new THREE.Vector3();
-    const corners = [corner(0, 0), corner(width, 0), corner(width, height), corner(0, height)];
-    const lines = [];
-    for (let i = 0; i < 4; ++i) lines.push(eye, corners[i], corners[i], corners[(i + 1) % 4]);
-    this.frustum = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(lines),
-                                          new THREE.LineBasicMaterial({ color: 0x3366cc }));
-    this.frustum.matrixAutoUpdate = false;
-    this.scene.add(this.frustum);
-    this.fieldOfView = 2 * Math.atan(height / (2 * fy)) * 180 / Math.PI;
-    this.moveCamera(0);
+  addFrusta() {
+    this.cameras = cameras.filter((camera) => camera.K && camera.image_size).map((camera) => {
+      const [width, height] = camera.image_size;
+      const [[fx, , cx], [, fy, cy]] = camera.K;
+      const depth = 0.6;
+      const corner = (u, v) => new THREE.Vector3((u - cx) / fx * depth, (v - cy) / fy * depth, depth);
+      const eye = new THREE.Vector3();
+      const corners = [corner(0, 0), corner(width, 0), corner(width, height), corner(0, height)];
+      const lines = [];
+      for (let i = 0; i < 4; ++i) lines.push(eye, corners[i], corners[i], corners[(i + 1) % 4]);
+      const frustum = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(lines),
+                                             new THREE.LineBasicMaterial({ color: 0x3366cc }));
+      frustum.matrixAutoUpdate = false;
+      this.scene.add(frustum);
+      return { ...camera, frustum, fieldOfView: 2 * Math.atan(height / (2 * fy)) * 180 / Math.PI };
+    });
+    this.moveCameras(0);
   }
 
   // To where the frame was seen from.
-  moveCamera(frame) {
-    if (!this.frustum) return;
-    const m = clip.cameras ? clip.cameras[frame] : clip.world_from_camera;
-    this.frustum.matrix.set(...m[0], ...m[1], ...m[2], 0, 0, 0, 1);
-    this.frustum.matrixWorldNeedsUpdate = true;
-    this.eye = new THREE.Vector3(m[0][3], m[1][3], m[2][3]);
-    this.ahead = new THREE.Vector3(m[0][2], m[1][2], m[2][2]);
+  moveCameras(frame) {
+    for (const camera of this.cameras) {
+      const m = camera.cameras ? camera.cameras[frame] : camera.world_from_camera;
+      camera.frustum.matrix.set(...m[0], ...m[1], ...m[2], 0, 0, 0, 1);
+      camera.frustum.matrixWorldNeedsUpdate = true;
+      camera.eye = new THREE.Vector3(m[0][3], m[1][3], m[2][3]);
+      camera.ahead = new THREE.Vector3(m[0][2], m[1][2], m[2][2]);
+    }
   }
 
   centreAt(second) {
@@ -165,10 +170,11 @@ class Stage {
       front: [0, 0.3, distance], side: [distance, 0.3, 0], back: [0, 0.3, -distance], top: [0, distance + 1, 0.01],
     };
     this.camera.fov = 40;
-    if (name === 'camera' && this.eye) {
-      this.camera.fov = this.fieldOfView;
-      this.camera.position.copy(this.eye);
-      at.copy(this.eye).addScaledVector(this.ahead, this.centre.distanceTo(this.eye));
+    const from = this.cameras.find(({ end }) => name === `camera${end}`);
+    if (from) {
+      this.camera.fov = from.fieldOfView;
+      this.camera.position.copy(from.eye);
+      at.copy(from.eye).addScaledVector(from.ahead, this.centre.distanceTo(from.eye));
     } else {
       this.camera.position.copy(at).add(new THREE.Vector3(...(places[name] || places.front)));
     }
@@ -184,7 +190,7 @@ class Stage {
   }
 
   show(frame) {
-    this.moveCamera(frame);
+    this.moveCameras(frame);
     this.pose(clip.seconds[frame]);
     const showJoints = element('show-joints').checked;
     this.bodies.forEach(({ mesh, texture }, index) => {
@@ -202,7 +208,7 @@ class Stage {
         sphere.material.color.copy(sigmaColour(row ? row[joint] : null));
       }
     }
-    if (this.frustum) this.frustum.visible = element('show-camera').checked;
+    for (const { frustum } of this.cameras) frustum.visible = element('show-camera').checked;
     this.draw();
   }
 
@@ -293,8 +299,9 @@ async function main() {
   const stage = new Stage(element('stage'));
   await stage.load();
   stage.resize();
-  const video = element('picture');
-  const hasVideo = element('video').textContent.trim() !== '';
+  const videos = cameras.filter(({ end }) => element(`video${end}`).textContent.trim() !== '')
+    .map(({ end }) => ({ player: element(`picture${end}`), bytes: `video${end}` }));
+  const hasVideo = videos.length > 0;
   let current = -1, playing = false, startedAt = 0, startedFrom = 0;
 
   function show(frame, moveVideo) {
@@ -310,13 +317,15 @@ async function main() {
     });
     element('place').textContent = `frame ${frame} of ${frames}, ${clip.seconds[frame].toFixed(2)} s; ${words.join('; ')}`;
     // The middle of the frame's time: a player shows the frame before when asked for its first instant.
-    if (moveVideo && hasVideo) video.currentTime = (frame + 0.5) / clip.fps;
+    if (moveVideo) for (const { player } of videos) player.currentTime = (frame + 0.5) / clip.fps;
   }
   const timeline = new Timeline(element('timeline'), (frame) => show(frame, true));
 
+  for (const { player, bytes } of videos) {
+    player.src = URL.createObjectURL(new Blob([bytesOf(bytes)], { type: 'video/mp4' }));
+  }
   if (hasVideo) {
-    video.src = URL.createObjectURL(new Blob([bytesOf('video')], { type: 'video/mp4' }));
-    video.addEventListener('ended', () => play(false));
+    videos[0].player.addEventListener('ended', () => play(false));
   } else {
     element('seen').style.display = 'none';
     element('stage').style.gridColumn = '1 / -1';
@@ -327,12 +336,19 @@ async function main() {
     if (on && current === frames - 1) show(0, true);
     startedAt = performance.now();
     startedFrom = clip.seconds[current];
-    if (hasVideo) on ? video.play() : video.pause();
+    for (const { player } of videos) on ? player.play() : player.pause();
     if (on) requestAnimationFrame(step);
+  }
+  // Players of further views drift by their own clocks; one that is a frame away from the first is put back.
+  function keepInStep() {
+    for (const { player } of videos.slice(1)) {
+      if (Math.abs(player.currentTime - videos[0].player.currentTime) > 1.5 / clip.fps) player.currentTime = videos[0].player.currentTime;
+    }
   }
   function step() {
     if (!playing) return;
-    show(hasVideo ? Math.floor(video.currentTime * clip.fps) : frameAt(startedFrom + (performance.now() - startedAt) / 1000), false);
+    if (hasVideo) keepInStep();
+    show(hasVideo ? Math.floor(videos[0].player.currentTime * clip.fps) : frameAt(startedFrom + (performance.now() - startedAt) / 1000), false);
     if (!hasVideo && current === frames - 1) return play(false);
     requestAnimationFrame(step);
   }
@@ -345,7 +361,7 @@ async function main() {
     if (event.key === 'ArrowRight') { play(false); show(current + 1, true); }
     if (event.key === 'ArrowLeft') { play(false); show(current - 1, true); }
   });
-  for (const name of ['front', 'side', 'back', 'top', 'camera']) {
+  for (const name of ['front', 'side', 'back', 'top', ...cameras.map(({ end }) => `camera${end}`)]) {
     element(`view-${name}`).addEventListener('click', () => {
       stage.holdCentre(clip.seconds[current]);
       stage.show(current);

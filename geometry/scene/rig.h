@@ -9,6 +9,9 @@
 
 namespace bodyloom {
 
+class BodyModel;
+struct Track;
+
 /// One camera of a rig. The rig's frame is the frame of its first camera. Standard deviations are 0 where the value was
 /// given and NaN where they are not known.
 struct RigCamera {
@@ -28,5 +31,10 @@ struct RigCamera {
   [[nodiscard]] double TimeAt(double first_s) const { return first_s + offset_s + rate * (first_s - middle_s); }
   [[nodiscard]] double FirstTimeAt(double own_s) const { return (own_s - offset_s + rate * middle_s) / (1 + rate); }
 };
+
+/// The track of a rig's first camera as another one sees it: in the frame of that camera and by its clock, with its
+/// intrinsics; the same if it has no clock. The world stays where it is. Throws std::invalid_argument for a moving
+/// camera.
+Track TrackSeenBy(const RigCamera& camera, const BodyModel& body, const Track& track);
 
 }  // namespace bodyloom

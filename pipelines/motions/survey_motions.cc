@@ -13,15 +13,10 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
 #include "pipelines/files.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 namespace {
-
-std::string Joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
 
 template <typename... Values>
 std::string Line(const char* format, Values... values) {
@@ -121,7 +116,7 @@ SurveyMotionsReport SurveyMotions(const SurveyMotionsRequest& request, const Pip
     const MotionQuality quality = MeasureMotionQuality(clip.motion, clip.has_floor);
     if (!request.sheet.empty()) {
       const std::string label = Line("%s   %s, %s, %.1f s  %s", clip.name.c_str(), clip.motion_class.c_str(),
-                                     clip.test ? "TEST" : "train", quality.seconds, Joined(quality.flags).c_str());
+                                     clip.test ? "TEST" : "train", quality.seconds, Joined(quality.flags, " ").c_str());
       strips.push_back(DrawMotionStrip(clip.motion, clip.has_floor, label, request.picture));
     }
     clip.motion = Motion();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/base/check.h"
+#include "geometry/scene/camera_path.h"
 #include "pipelines/page/report_page.h"
 #include "pipelines/report_text.h"
 
@@ -19,6 +20,8 @@ constexpr const char* kSceneStyle = R"(<style>
 main { max-width: 1280px; }
 .scene { display: grid; grid-template-columns: minmax(0, 2fr) minmax(0, 3fr); gap: 12px; }
 #seen video { width: 100%; max-height: 560px; background: #000; border-radius: 6px; }
+#seen.views { display: grid; grid-template-columns: repeat(auto-fit, minmax(45%, 1fr)); gap: 6px; align-content: start; }
+#seen figure { margin: 0; } #seen figcaption { color: #4a5568; font-size: 13px; }
 #stage { height: 560px; border: 1px solid #e2e8f0; border-radius: 6px; overflow: hidden; }
 .controls { display: flex; flex-wrap: wrap; gap: 10px; align-items: center; margin: 10px 0; }
 .controls input[type=range] { flex: 1; min-width: 200px; }
@@ -42,16 +45,15 @@ button { font: inherit; padding: 3px 12px; border: 1px solid #cbd5e0; border-rad
 </style>
 )";
 
-constexpr const char* kSceneHtml = R"(<div class="scene">
-<div id="seen"><video id="picture" muted playsinline preload="auto"></video></div>
-<div id="stage"></div>
+constexpr const char* kStageHtml = R"(<div id="stage"></div>
 </div>
 <div class="controls"><button id="play">Play</button><input id="slider" type="range" min="0" value="0" aria-label="frame"></div>
 <div id="place"></div>
 <div class="controls">
 <button id="view-front">Front</button><button id="view-side">Side</button><button id="view-back">Back</button>
-<button id="view-top">Above</button><button id="view-camera">Camera</button>
-<label><input id="show-body" type="checkbox" checked> body</label>
+<button id="view-top">Above</button>)";
+
+constexpr const char* kShownHtml = R"(<label><input id="show-body" type="checkbox" checked> body</label>
 <label><input id="show-texture" type="checkbox" checked> colours of the video</label>
 <label><input id="show-joints" type="checkbox"> joints, σ from 0 <span id="scale" class="scale"></span> to <span id="scale-end"></span></label>
 <label><input id="show-camera" type="checkbox" checked> camera</label>
@@ -88,6 +90,13 @@ PageJson RowsOf(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
   return rows;
 }
 
+/// K, image size and name of a pinhole camera; nothing of another.
+void AddCamera(const Camera& camera, PageJson* json) {
+  if (camera.width <= 0 || camera.model != CameraModel::kPinhole) return;
+  (*json)["K"] = {{camera.fx, 0, camera.cx}, {0, camera.fy, camera.cy}, {0, 0, 1}};
+  (*json)["image_size"] = {camera.width, camera.height};
+}
+
 PageJson ClipJson(const ClipPageContent& content) {
   PageJson json = {{"fps", content.fps}};
   for (const double second : content.seconds) json["seconds"].push_back(std::round(second * 1e4) / 1e4);
@@ -96,12 +105,37 @@ PageJson ClipJson(const ClipPageContent& content) {
   for (const CameraPose& pose : content.world_from_cameras) {
     json["cameras"].push_back(RowsOf(pose.camera_from_world_rotation, pose.camera_from_world_translation));
   }
-  const Camera& camera = content.camera;
-  if (camera.width > 0 && camera.model == CameraModel::kPinhole) {
-    json["K"] = {{camera.fx, 0, camera.cx}, {0, camera.fy, camera.cy}, {0, 0, 1}};
-    json["image_size"] = {camera.width, camera.height};
+  AddCamera(content.camera, &json);
+  for (const ClipPageView& view : content.views) {
+    const CameraPose world_from_camera = Inverse(view.camera_from_world);
+    PageJson& own = json["views"].emplace_back();
+    own["world_from_camera"] =
+        RowsOf(world_from_camera.camera_from_world_rotation, world_from_camera.camera_from_world_translation);
+    AddCamera(view.camera, &own);
   }
   return json;
+}
+
+/// Videos beside the scene, and its buttons. Elements of further cameras have their number at the end of their id.
+std::string SceneHtml(const ClipPageContent& content) {
+  const auto video = [&](const std::string& id, const std::string& name) {
+    const std::string element = "<video id=\"" + id + "\" muted playsinline preload=\"auto\"></video>";
+    return content.views.empty() ? element
+                                 : "<figure>" + element + "<figcaption>" + EscapeHtml(name) + "</figcaption></figure>";
+  };
+  const auto button = [](const std::string& id, const std::string& name) {
+    return "<button id=\"" + id + "\">" + EscapeHtml(name) + "</button>\n";
+  };
+  std::string html = "<div class=\"scene\">\n<div id=\"seen\"" +
+                     std::string(content.views.empty() ? "" : " class=\"views\"") + ">" +
+                     video("picture", content.view_name);
+  std::string buttons = button("view-camera", content.views.empty() ? "Camera" : "Camera " + content.view_name);
+  for (size_t v = 0; v < content.views.size(); ++v) {
+    const std::string number = "-" + std::to_string(v + 1);
+    if (!content.views[v].video_mp4.empty()) html += video("picture" + number, content.views[v].name);
+    buttons += button("view-camera" + number, "Camera " + content.views[v].name);
+  }
+  return html + "</div>\n" + kStageHtml + buttons + kShownHtml;
 }
 
 /// Text for a <script> element: JSON may hold "</script>" in a name.
@@ -164,7 +198,7 @@ std::string ClipPageHtml(const ClipPageContent& content) {
   CheckContent(content);
   ReportPage page(content.title, content.subtitle);
   page.AddHtml(kSceneStyle);
-  page.AddHtml(kSceneHtml);
+  page.AddHtml(SceneHtml(content));
   page.AddHeading("Files");
   page.AddHtml(LinksHtml(content));
   if (!content.summary.empty()) {
@@ -182,6 +216,10 @@ std::string ClipPageHtml(const ClipPageContent& content) {
   page.AddHtml(DataScript("clip", "application/json", ScriptText(ClipJson(content).dump())));
   page.AddHtml(DataScript("glb", "application/octet-stream", Base64(content.glb)));
   page.AddHtml(DataScript("video", "application/octet-stream", Base64(content.video_mp4)));
+  for (size_t v = 0; v < content.views.size(); ++v) {
+    page.AddHtml(
+        DataScript("video-" + std::to_string(v + 1), "application/octet-stream", Base64(content.views[v].video_mp4)));
+  }
   for (size_t i = 0; i < content.files.size(); ++i) {
     page.AddHtml(DataScript("file-" + std::to_string(i), "application/octet-stream", Base64(content.files[i].bytes)));
   }

@@ -31,6 +31,14 @@ struct ClipPageFile {
   std::string name, mime_type, bytes;
 };
 
+/// A further camera, which stands still; its video is in step with the first one's.
+struct ClipPageView {
+  std::string name;
+  Camera camera;
+  CameraPose camera_from_world;
+  std::string video_mp4;  ///< as the first one's; empty: no video
+};
+
 struct ClipPageContent {
   std::string title, subtitle;
   std::vector<double> seconds;  ///< N, from the scene's start, ascending: when each frame is shown
@@ -38,6 +46,8 @@ struct ClipPageContent {
   Camera camera;  ///< width 0: unknown, no frustum is drawn
   WorldFrame world;
   std::vector<CameraPose> world_from_cameras;  ///< N of a camera that moves, or empty
+  std::string view_name;                       ///< of this camera, where there are further ones
+  std::vector<ClipPageView> views;             ///< further ones
   std::vector<ClipPagePerson> people;
   std::string glb;                  ///< the scene (data_tools/export/glb_writer.h)
   std::string video_mp4;            ///< one image per frame, at a constant `fps`; empty: no video

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -132,35 +133,60 @@ class PageTextures {
   std::vector<std::unique_ptr<PersonTexture>> people_;
 };
 
+/// The video's images at these times, of even steps on the page, as an .mp4's bytes; the last image is repeated where
+/// the video has none. `use(i, image)` is called at each of them, with null where there is none.
+std::string VideoBytes(const std::string& out, const std::vector<double>& times, double fps, TrackVideo* video,
+                       const std::function<void(size_t, const Image*)>& use) {
+  const double longer = std::max(video->info().width, video->info().height),
+               scale = std::min(1.0, kPageVideoPx / longer);
+  const int width = std::max(2, int(std::lround(scale * video->info().width))),
+            height = std::max(2, int(std::lround(scale * video->info().height)));
+  const AtomicPath file(out + ".mp4");  // never committed: only its bytes are wanted
+  VideoEncoder encoder(file.temporary(), out, width, height, fps);
+  Image image(width, height);
+  for (size_t i = 0; i < times.size(); ++i) {
+    const Image* shown = video->At(times[i]);
+    use(i, shown);
+    if (shown != nullptr) image = Resized(*shown, width, height);
+    encoder.Write(image);
+  }
+  const std::string fault = encoder.Finish();
+  if (!fault.empty()) throw std::runtime_error(out + ": " + fault);
+  return ReadFileBytes(file.temporary());
+}
+
 struct Seen {
   std::string video_mp4;
   std::vector<std::string> textures;
 };
 
-/// The video's images at evenly spaced times (the last one is repeated where the video has none), and the people's
-/// textures.
+/// The tracks' video on the page, and the people's textures.
 Seen SeenIn(const ClipPageRequest& request, const std::vector<double>& moments, double fps,
-            const PipelineCallbacks& callbacks) {
+            const std::function<void(size_t)>& update) {
   TrackVideo video(request.video, *request.people[0].track, request.video_px_from_camera_px, request.video_offset);
-  const double longer = std::max(video.info().width, video.info().height), scale = std::min(1.0, kPageVideoPx / longer);
-  const int width = std::max(2, int(std::lround(scale * video.info().width))),
-            height = std::max(2, int(std::lround(scale * video.info().height)));
-  const AtomicPath file(request.out + ".mp4");  // never committed: only its bytes are wanted
-  VideoEncoder encoder(file.temporary(), request.out, width, height, fps);
   PageTextures textures(request.people, video);
   const size_t every = (moments.size() + kPageTextureImages - 1) / kPageTextureImages;
-  Image image(width, height);
-  for (size_t i = 0; i < moments.size(); ++i) {
-    callbacks.Update("report", double(i) / double(moments.size()));
-    if (const Image* shown = video.At(moments[i])) {
-      if (i % every == 0) textures.Add(moments[i], *shown);
-      image = Resized(*shown, width, height);
-    }
-    encoder.Write(image);
-  }
-  const std::string fault = encoder.Finish();
-  if (!fault.empty()) throw std::runtime_error(request.out + ": " + fault);
-  return {ReadFileBytes(file.temporary()), textures.Pngs()};
+  std::string bytes = VideoBytes(request.out, moments, fps, &video, [&](size_t i, const Image* shown) {
+    update(i);
+    if (shown != nullptr && i % every == 0) textures.Add(moments[i], *shown);
+  });
+  return {std::move(bytes), textures.Pngs()};
+}
+
+/// A further camera on the page, with its video at the same moments.
+ClipPageView ViewOf(const ClipPageRequest& request, const ViewOnPage& view, const WorldFrame& world,
+                    const std::vector<double>& moments, double fps, const std::function<void(size_t)>& update) {
+  ClipPageView shown;
+  shown.name = view.camera.name;
+  shown.camera = view.camera.camera;
+  shown.camera_from_world = Compose(view.camera.camera_from_rig, world.camera_pose());
+  if (view.video.empty()) return shown;
+  std::vector<double> times;
+  for (const double moment : moments) times.push_back(view.camera.HasClock() ? view.camera.TimeAt(moment) : moment);
+  const PersonOnPage& person = request.people[0];
+  TrackVideo video(view.video, TrackSeenBy(view.camera, *person.body, *person.track), view.video_px_from_camera_px);
+  shown.video_mp4 = VideoBytes(request.out, times, fps, &video, [&](size_t i, const Image*) { update(i); });
+  return shown;
 }
 
 /// Empty where BVH cannot say what the track says.
@@ -212,10 +238,20 @@ void WriteClipPage(const ClipPageRequest& request, const PipelineCallbacks& call
   GlbOptions options;
   options.correctives = request.correctives;
   GlbSummary exactness;
+  size_t videos = 0;
+  const auto update = [&](size_t i) {
+    const double share = double(i) / double(moments.size());
+    callbacks.Update("report", (double(videos) + share) / double(1 + request.views.size()));
+  };
   if (!request.video.empty()) {
-    Seen seen = SeenIn(request, moments, content.fps, callbacks);
+    Seen seen = SeenIn(request, moments, content.fps, update);
     content.video_mp4 = std::move(seen.video_mp4);
     options.textures = std::move(seen.textures);
+  }
+  content.view_name = request.view_name;
+  for (const ViewOnPage& view : request.views) {
+    ++videos;
+    content.views.push_back(ViewOf(request, view, content.world, moments, content.fps, update));
   }
   content.glb = GlbText(scene, options, &exactness);
   content.summary = request.summary;

@@ -9,6 +9,7 @@
 #include "data_tools/observations/load_cameras.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/body/body_model.h"
+#include "geometry/scene/rig.h"
 #include "geometry/scene/track.h"
 #include "tracking/problem/track_summary.h"
 
@@ -23,12 +24,21 @@ struct PersonOnPage {
   std::string track_file;                         ///< offered for download; empty: not
 };
 
+/// A further camera of the scene.
+struct ViewOnPage {
+  RigCamera camera;  ///< name, intrinsics, pose relative to the tracks' camera, and clock
+  std::string video;
+  Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
+};
+
 struct ClipPageRequest {
   std::string out;                   ///< .html
   std::vector<PersonOnPage> people;  ///< tracks of one camera and one clock
   std::string video;                 ///< shown beside the bodies; empty: none
   int video_offset = 0;              ///< video frame of the tracks' time zero
   Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
+  std::string view_name;          ///< of the tracks' camera, where there are further ones
+  std::vector<ViewOnPage> views;  ///< further ones
   std::string title;
   std::string summary;  ///< lines that the page shows
   int correctives = 8;  ///< shapes for pose correctives in the scene, 0 to 64

@@ -11,6 +11,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "geometry/base/prefetcher.h"
+#include "geometry/scene/camera_path.h"
 #include "pipelines/video/track_video.h"
 #include "render/view/overlay.h"
 
@@ -101,6 +102,14 @@ OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& wh
     return own.Render(t, frame);
   };
   return WriteFrames<OverlayRenderer>(&writer, track.motion.timestamps, video.get(), renderer, draw, what.progress);
+}
+
+void SetScene(const SharedScene& scene, const CameraPose& camera_from_scene, PeopleOverlayVideo* overlay) {
+  if (!scene.has_up) return;
+  const KnownGround& ground = scene.ground;
+  overlay->up_in_camera = camera_from_scene.camera_from_world_rotation * ground.up;
+  if (!ground.has_plane) return;
+  overlay->ground = Floor{MovedPoint(camera_from_scene, -ground.camera_height_m * ground.up), overlay->up_in_camera};
 }
 
 OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOverlayVideo& what) {

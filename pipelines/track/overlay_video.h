@@ -12,6 +12,7 @@
 #include "geometry/scene/observations.h"
 #include "geometry/scene/track.h"
 #include "render/view/people_overlay.h"
+#include "tracking/room/shared_scene.h"
 
 namespace bodyloom {
 
@@ -49,6 +50,9 @@ struct PeopleOverlayVideo {
   std::optional<Floor> ground;  ///< none: just below the lowest joint
   std::function<void(double fraction)> progress = [](double) {};
 };
+
+/// Draws with the scene's vertical and ground, as a camera sees them that stands at `camera_from_scene`.
+void SetScene(const SharedScene& scene, const CameraPose& camera_from_scene, PeopleOverlayVideo* overlay);
 
 /// Draws one picture per moment at which somebody is tracked. Throws as WriteOverlayVideo() and PeopleOverlay.
 OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOverlayVideo& what);

@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/formats/atomic_file.h"
-#include "data_tools/motion/track_io.h"
 #include "data_tools/observations/part_labels.h"
 #include "data_tools/observations/people_npz.h"
 #include "geometry/base/check.h"
@@ -14,6 +12,7 @@
 #include "pipelines/files.h"
 #include "pipelines/page/write_clip_page.h"
 #include "pipelines/track/overlay_video.h"
+#include "pipelines/track/people_outputs.h"
 #include "pipelines/track/track_inputs.h"
 
 namespace bodyloom {
@@ -21,10 +20,6 @@ namespace {
 
 std::string FileIn(const TrackPeopleClipRequest& request, const std::string& name) {
   return (std::filesystem::path(request.out) / name).string();
-}
-
-std::string TrackFile(const TrackPeopleClipRequest& request, int number) {
-  return FileIn(request, Concatenate("person_", number, ".npz"));
 }
 
 std::string MaskFile(const TrackPeopleClipRequest& request, int number) {
@@ -45,8 +40,8 @@ void CheckRequest(const TrackPeopleRequest& request, const GivenInMemory& given)
 
 void CheckFiles(const TrackPeopleClipRequest& request) {
   RequireDistinct(RequireFiles(request.track, request.track.detector),
-                  {FileIn(request, "detections.npz"), TrackFile(request, 0), request.masks ? MaskFile(request, 0) : "",
-                   request.overlay ? FileIn(request, "overlay.mp4") : "",
+                  {FileIn(request, "detections.npz"), TrackFileIn(request.out, 0),
+                   request.masks ? MaskFile(request, 0) : "", request.overlay ? FileIn(request, "overlay.mp4") : "",
                    request.report ? FileIn(request, "report.html") : "", FileIn(request, "summary.json")});
   RequireWritableFolder(request.out);
 }
@@ -97,11 +92,7 @@ void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scen
   overlay.video = request.track.video;
   overlay.video_px_from_camera_px = scene.camera.video_px_from_camera_px;
   overlay.side_view = request.side_view;
-  const SharedScene& shared = tracked.result.summary.scene;
-  if (shared.has_up) overlay.up_in_camera = shared.ground.up;
-  if (shared.has_up && shared.ground.has_plane) {
-    overlay.ground = Floor{-shared.ground.camera_height_m * shared.ground.up, shared.ground.up};
-  }
+  SetScene(tracked.result.summary.scene, CameraPose(), &overlay);
   callbacks.Begin("drawing the overlay");
   overlay.progress = [&](double fraction) { callbacks.Update("overlay", fraction); };
   const std::string path = FileIn(request, "overlay.mp4");
@@ -113,15 +104,7 @@ void WriteReportPage(const TrackPeopleClipRequest& request, const SceneInputs& s
                      const PipelineCallbacks& callbacks, TrackPeopleReport* report) {
   ClipPageRequest page;
   page.out = FileIn(request, "report.html");
-  for (size_t i = 0; i < report->people.size(); ++i) {
-    const TrackedPerson& person = report->people[i];
-    if (person.track.empty()) continue;
-    page.people.push_back({.number = person.number,
-                           .body = scene.body.get(),
-                           .track = &result.people[i].track,
-                           .summary = &person.solve,
-                           .track_file = person.track});
-  }
+  page.people = PeopleOnPage(*report, *scene.body, result.people);
   TrackPeopleReport told = *report;
   told.outputs.clear();  // files are where the page is
   page.video = request.track.video;
@@ -131,13 +114,6 @@ void WriteReportPage(const TrackPeopleClipRequest& request, const SceneInputs& s
   callbacks.Begin("writing the page");
   WriteClipPage(page, callbacks);
   report->outputs.push_back(page.out);
-}
-
-void EndReport(StageClock* clock, TrackPeopleReport* report) {
-  clock->End();
-  report->seconds = clock->seconds();
-  report->total_seconds = clock->total();
-  report->peak_memory_bytes = PeakMemoryBytes();
 }
 
 }  // namespace
@@ -161,13 +137,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   clock.Begin("track");
   const TrackedScene tracked = TrackDetectedPeople(request, scene, people, callbacks, &report);
   clock.Begin("write");
-  for (size_t i = 0; i < report.people.size(); ++i) {
-    TrackedPerson& person = report.people[i];
-    if (!person.solve.IsUsable()) continue;
-    person.track = TrackFile(request, person.number);
-    WriteTrack(person.track, tracked.result.people[i].track);
-    report.outputs.push_back(person.track);
-  }
+  WriteTracks(request.out, tracked.result.people, &report);
   if (request.overlay && tracked.any) {
     clock.Begin("overlay");
     WriteOverlay(request, scene, tracked, callbacks, &report);
@@ -176,9 +146,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
     clock.Begin("page");
     WriteReportPage(request, scene, tracked.result, callbacks, &report);
   }
-  EndReport(&clock, &report);
-  report.outputs.push_back(FileIn(request, "summary.json"));
-  WriteFileAtomically(report.outputs.back(), ToJson(report));
+  WriteSummary(request.out, &clock, &report);
   RequireAnyTrack(request, tracked);
   return report;
 }

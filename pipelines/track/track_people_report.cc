@@ -30,6 +30,7 @@ std::string PersonText(const TrackedPerson& person) {
   if (person.solve.stature_m > 0) {
     text += "         taken to be " + Fixed(person.solve.stature_m, 2) + " m tall\n";
   }
+  if (!person.views.empty()) text += "         seen by " + Joined(person.views) + "\n";
   if (person.room.frames > 0) text += "         " + person.room.BriefReport() + "\n";
   if (person.seen.joined > 0) {
     text += Concatenate("         found ", person.seen.joined + 1, " times over in the same body, joined\n");
@@ -66,26 +67,28 @@ Json SceneJson(const SharedScene& scene) {
 
 Json PersonJson(const TrackedPerson& person) {
   const TrackSequenceSummary& solve = person.solve;
-  return {{"number", person.number},
-          {"track", person.track},
-          {"frames", person.seen.frames},
-          {"joined", person.seen.joined},
-          {"first_s", person.seen.first_s},
-          {"last_s", person.seen.last_s},
-          {"height_px", person.seen.height_px},
-          {"visible", person.seen.visible},
-          {"status", ToString(solve.status)},
-          {"message", solve.message},
-          {"frames_by_status", solve.frames_by_status},
-          {"lost_in_holes", solve.lost_in_holes},
-          {"reprojection_median_px", solve.reprojection_median_px},
-          {"reprojection_p95_px", solve.reprojection_p95_px},
-          {"focal_px", solve.focal_px},
-          {"stature_m", solve.stature_m},
-          {"swaps_repaired", solve.num_swaps_repaired},
-          {"hidden_frames", person.hidden.frames},
-          {"fitted_again", person.fitted_again},
-          {"room", ToJson(person.room)}};
+  Json json = {{"number", person.number},
+               {"track", person.track},
+               {"frames", person.seen.frames},
+               {"joined", person.seen.joined},
+               {"first_s", person.seen.first_s},
+               {"last_s", person.seen.last_s},
+               {"height_px", person.seen.height_px},
+               {"visible", person.seen.visible},
+               {"status", ToString(solve.status)},
+               {"message", solve.message},
+               {"frames_by_status", solve.frames_by_status},
+               {"lost_in_holes", solve.lost_in_holes},
+               {"reprojection_median_px", solve.reprojection_median_px},
+               {"reprojection_p95_px", solve.reprojection_p95_px},
+               {"focal_px", solve.focal_px},
+               {"stature_m", solve.stature_m},
+               {"swaps_repaired", solve.num_swaps_repaired},
+               {"hidden_frames", person.hidden.frames},
+               {"fitted_again", person.fitted_again},
+               {"room", ToJson(person.room)}};
+  if (!person.views.empty()) json["views"] = person.views;
+  return json;
 }
 
 }  // namespace
@@ -93,6 +96,7 @@ Json PersonJson(const TrackedPerson& person) {
 std::string ToText(const TrackPeopleReport& report) {
   std::string text = Concatenate("frames   ", report.num_frames, " of ", report.width, "x", report.height, " pixels, ",
                                  Fixed(report.fps, 2), " a second\n");
+  text += ToText(report.views);
   for (const TrackedPerson& person : report.people) text += PersonText(person);
   constexpr size_t kMostTold = 10;
   const std::vector<LeftOutPerson>& left_out = report.left_out;
@@ -140,6 +144,7 @@ std::string ToJson(const TrackPeopleReport& report) {
                {"total_seconds", report.total_seconds},
                {"peak_memory_bytes", report.peak_memory_bytes},
                {"outputs", report.outputs}};
+  for (const ViewReport& view : report.views) json["views"].push_back(ToJson(view));
   if (report.masks_cut) json["masks_cut"] = *report.masks_cut;
   if (!report.camera_path.file.empty()) json["camera_path"] = ToJson(report.camera_path, report.camera_scale);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

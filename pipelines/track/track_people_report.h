@@ -11,6 +11,7 @@
 #include "geometry/base/stopwatch.h"
 #include "pipelines/detect/detect_clip.h"
 #include "pipelines/track/clip_camera_path.h"
+#include "pipelines/track/view_report.h"
 #include "tracking/people/occlusion.h"
 #include "tracking/problem/track_summary.h"
 #include "tracking/room/shared_scene.h"
@@ -21,10 +22,11 @@ struct TrackedPerson {
   int number = 0;  ///< in LinkPeople()'s order
   FoundPerson seen;
   TrackSequenceSummary solve;
-  HiddenCounts hidden;        ///< occlusions by other people
-  bool fitted_again = false;  ///< with the scene shared by all fits
-  RoomPhysics room;           ///< where a ground was found or given; else of no frame
-  std::string track;          ///< file; empty if not tracked (solve.message)
+  HiddenCounts hidden;             ///< occlusions by other people
+  bool fitted_again = false;       ///< with the scene shared by all fits
+  RoomPhysics room;                ///< where a ground was found or given; else of no frame
+  std::vector<std::string> views;  ///< of several cameras: names of those that show the person
+  std::string track;               ///< file; empty if not tracked (solve.message)
 };
 
 /// Someone found who is not tracked.
@@ -44,7 +46,8 @@ struct TrackPeopleReport {
   std::vector<TrackedPerson> people;
   std::vector<LeftOutPerson> left_out;
   SharedScene scene;
-  WorldFrame world;  ///< of all tracks
+  WorldFrame world;               ///< of all tracks
+  std::vector<ViewReport> views;  ///< of several videos, the first's first
   CameraPathReport camera_path;
   CameraPathSummary camera_scale;  ///< scale of the path, common to all tracks
   StageSeconds seconds;

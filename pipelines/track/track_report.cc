@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "geometry/base/units.h"
-#include "geometry/math/rotation.h"
-#include "geometry/scene/camera_path.h"
 #include "pipelines/report_json.h"
 #include "pipelines/report_text.h"
 #include "pipelines/track/clip_camera_path.h"
@@ -75,79 +72,6 @@ Json ToJson(const WorstStretch& worst) {
   return {{"begin_frame", worst.begin},    {"end_frame", worst.end},         {"begin_s", worst.begin_s},
           {"end_s", worst.end_s},          {"cost_ratio", worst.cost_ratio}, {"term", worst.term},
           {"term_share", worst.term_share}};
-}
-
-double DegreesFromFirst(const ViewReport& view) {
-  return RotationAngleBetween(view.camera.camera_from_rig.camera_from_world_rotation, Eigen::Matrix3d::Identity()) /
-         kDegree;
-}
-
-/// Distance of the cameras' centres.
-double MetresFromFirst(const ViewReport& view) { return CentreOf(view.camera.camera_from_rig).norm(); }
-
-/// " (within 0.5 deg, 0.05 m)" of standard deviations that are positive.
-std::string WithinText(const std::vector<std::pair<double, std::string>>& sigmas) {
-  std::string text;
-  for (const auto& [sigma, shown] : sigmas) {
-    if (sigma > 0) text += (text.empty() ? " (within " : ", ") + shown;
-  }
-  return text.empty() ? "" : text + ")";
-}
-
-/// One line for each view.
-std::string ToText(const std::vector<ViewReport>& views) {
-  size_t width = 0;
-  for (const ViewReport& view : views) width = std::max(width, view.camera.name.size());
-  std::string text;
-  for (size_t v = 0; v < views.size(); ++v) {
-    const ViewReport& view = views[v];
-    const RigCamera& camera = view.camera;
-    text += "view     " + camera.name + std::string(width - camera.name.size() + 2, ' ');
-    if (!view.left_out.empty()) {
-      text += "left out: " + view.left_out + "\n";
-      continue;
-    }
-    const double rotation_sigma_deg = camera.rotation_sigma_rad / kDegree;
-    text += v == 0
-                ? "first"
-                : Fixed(DegreesFromFirst(view), 1) + " deg, " + Fixed(MetresFromFirst(view), 2) + " m from the first" +
-                      WithinText({{rotation_sigma_deg, Fixed(rotation_sigma_deg, 1) + " deg"},
-                                  {camera.translation_sigma_m, Fixed(camera.translation_sigma_m, 2) + " m"}});
-    text += "; focal length " + Fixed(camera.camera.fx, 1) + " px" +
-            WithinText({{camera.focal_log_sigma, Fixed(100 * camera.focal_log_sigma, 1) + " %"}});
-    if (v > 0) {
-      text += "; clock " + Fixed(camera.offset_s, 3) + " s, " + Fixed(camera.offset_s * view.fps, 1) + " frames" +
-              WithinText({{camera.offset_sigma_s, Fixed(camera.offset_sigma_s, 3) + " s"}}) + "; " +
-              std::to_string(view.frames) + " frames in common";
-    }
-    text += "; median " + Fixed(view.reprojection_median_px, 2) + " px\n";
-  }
-  return text;
-}
-
-Json ToJson(const ViewReport& view) {
-  const RigCamera& camera = view.camera;
-  Json json = {
-      {"name", camera.name}, {"detections", view.detections}, {"used", view.left_out.empty()}, {"fps", view.fps}};
-  if (!view.left_out.empty()) {
-    json["left_out"] = view.left_out;
-    return json;
-  }
-  if (!view.doubt.empty()) json["doubt"] = view.doubt;
-  json["frames"] = view.frames;
-  json["rotation_deg"] = DegreesFromFirst(view);
-  json["rotation_sigma_deg"] = camera.rotation_sigma_rad / kDegree;
-  json["distance_m"] = MetresFromFirst(view);
-  json["translation_sigma_m"] = camera.translation_sigma_m;
-  json["focal_px"] = camera.camera.fx;
-  json["focal_log_sigma"] = camera.focal_log_sigma;
-  json["offset_s"] = camera.offset_s;
-  json["offset_frames"] = camera.offset_s * view.fps;
-  json["offset_sigma_s"] = camera.offset_sigma_s;
-  json["rate"] = camera.rate;
-  json["rate_sigma"] = camera.rate_sigma;
-  json["reprojection_median_px"] = view.reprojection_median_px;
-  return json;
 }
 
 }  // namespace

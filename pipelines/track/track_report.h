@@ -9,8 +9,8 @@
 
 #include "data_tools/evaluation/room_physics.h"
 #include "geometry/base/stopwatch.h"
-#include "geometry/scene/rig.h"
 #include "pipelines/track/clip_camera_path.h"
+#include "pipelines/track/view_report.h"
 #include "tracking/clip/initialiser_gain.h"
 #include "tracking/clip/track_plan.h"
 #include "tracking/problem/track_input.h"
@@ -25,17 +25,6 @@ struct InitialiserReport {
   bool has_shape = false;        ///< it has the shape of the fitted body
   bool gives_landmarks = false;  ///< it has landmarks of another body, no rotations
   InitialiserGain gain;
-};
-
-/// One camera of a track from several (TrackViewsClip()).
-struct ViewReport {
-  RigCamera camera;        ///< as given or estimated, relative to the first; name
-  std::string detections;  ///< file
-  std::string left_out;    ///< the reason if the view was not used, in which case only the name is set of `camera`
-  std::string doubt;       ///< the reason to doubt that a view that was used shows the first one's motion; empty: none
-  int frames = 0;          ///< of the first view's clip that it shows, too
-  double fps = 0;          ///< median
-  double reprojection_median_px = 0;
 };
 
 struct TrackReport {

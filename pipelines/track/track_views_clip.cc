@@ -50,6 +50,7 @@ std::vector<ObservedView> ObservedViews(const std::vector<ViewInputs>& views) {
     one.knowledge = view.inputs.camera_knowledge;
     one.camera = input.camera;
     one.focal_prior = input.focal_prior;
+    one.picture_vertical = input.picture_vertical;
     one.camera_from_rig = view.camera_from_rig;
     if (view.clock.HasClock()) one.offset_s = 0;  // its timestamps are of the first view's clock
   }
@@ -87,86 +88,16 @@ std::vector<PlanEntry> PlanOfViews(const TrackViewsRequest& request, const std::
   return plan;
 }
 
-/// The fits of each view alone and of all together as one fraction.
-class ViewsProgress {
- public:
-  ViewsProgress(size_t num_views, double share, const PipelineCallbacks& callbacks)
-      : fits_(static_cast<double>(num_views + 1)), share_(share), callbacks_(callbacks) {}
-  /// False if the caller cancelled.
-  bool Report(const TrackProgress& at) {
-    if (at.fraction < last_) done_ = std::min(done_ + 1, fits_ - 1);
-    last_ = at.fraction;
-    stage_ = at.stage;
-    cancelled_ = cancelled_ || !callbacks_.ReportProgress(at.stage, share_ * (done_ + at.fraction) / fits_);
-    return !cancelled_;
-  }
-  /// Reports the end. Throws Cancelled.
-  void End() const {
-    if (cancelled_ || !callbacks_.ReportProgress(stage_, share_)) throw Cancelled();
-  }
-
- private:
-  double fits_, share_;
-  const PipelineCallbacks& callbacks_;
-  double done_ = 0, last_ = 0;
-  std::string stage_;
-  bool cancelled_ = false;
-};
-
-/// The camera of a view by the joint fit; `middle_s`: of the first view's clip.
-ViewReport ReportOnView(const ViewInputs& view, const ViewSummary& found, double middle_s) {
-  ViewReport report;
-  RigCamera& camera = report.camera;
-  if (view.clock.HasClock()) {
-    camera = view.clock;
-  } else {
-    camera.offset_s = found.offset_s;
-    camera.rate = found.rate;
-    camera.middle_s = middle_s;
-    camera.offset_sigma_s = found.offset_sigma_s;
-    camera.rate_sigma = found.rate_sigma;
-  }
-  camera.camera = found.camera;
-  camera.camera_from_rig = found.camera_from_scene;
-  camera.rotation_sigma_rad = found.rotation_sigma_rad;
-  camera.translation_sigma_m = found.translation_sigma_m;
-  camera.focal_log_sigma = found.focal_log_sigma;
-  report.frames = found.frames;
-  report.reprojection_median_px = found.reprojection_median_px;
-  return report;
-}
-
-/// The reason to doubt that the view shows the first one's motion; empty if there is none.
-std::string DoubtAbout(const ViewReport& view, const ViewReport& first) {
-  constexpr double kMaxResidualRatio = 2, kMaxFocalSigmas = 3;
-  const Camera& camera = view.camera.camera;
-  const FocalPrior prior = FocalPrior::ForImage(camera.width, camera.height);
-  if (view.camera.focal_log_sigma != 0 &&
-      std::abs(std::log(camera.fx) - prior.log_mean) > kMaxFocalSigmas * prior.log_sigma) {
-    return Concatenate("its focal length of ", std::lround(camera.fx), " px is unlikely in images of ", camera.width,
-                       "x", camera.height);
-  }
-  if (view.reprojection_median_px > kMaxResidualRatio * first.reprojection_median_px) {
-    return Concatenate("its residuals are ", std::lround(view.reprojection_median_px / first.reprojection_median_px),
-                       " times those of the first view");
-  }
-  return "";
-}
-
 std::vector<ViewReport> ReportOnViews(const std::vector<ViewInputs>& views, const TrackViewsResult& result) {
   const TrackSequenceSummary& joint = result.joint.summary;
   const std::vector<double>& times = views[0].inputs.timestamps();
   const double middle_s = 0.5 * (times.front() + times.back());
-  std::vector<ViewReport> reports(1);
-  reports[0].camera.camera = result.joint.track.camera;
-  reports[0].camera.middle_s = middle_s;
-  reports[0].camera.focal_log_sigma = joint.focal_log_sigma;
+  std::vector<ViewReport> reports = {ReportOnFirstView(joint, result.joint.track.camera, middle_s)};
   reports[0].frames = views[0].inputs.num_frames();
-  reports[0].reprojection_median_px = joint.reprojection_median_px;
   size_t used = 0;
   for (size_t v = 1; v < views.size(); ++v) {
     if (result.summary.used[v] != 0) {
-      reports.push_back(ReportOnView(views[v], joint.views[used++], middle_s));
+      reports.push_back(ReportOnView(joint.views[used++], views[v].clock, middle_s));
       reports.back().doubt = DoubtAbout(reports.back(), reports[0]);
       continue;
     }
@@ -179,15 +110,6 @@ std::vector<ViewReport> ReportOnViews(const std::vector<ViewInputs>& views, cons
     reports[v].fps = views[v].fps;
   }
   return reports;
-}
-
-void WriteRigOfViews(const std::string& path, TrackReport* report) {
-  std::vector<RigCamera> rig;
-  for (const ViewReport& view : report->views) {
-    if (view.left_out.empty()) rig.push_back(view.camera);
-  }
-  WriteRig(path, rig);
-  report->outputs.push_back(path);
 }
 
 }  // namespace
@@ -212,10 +134,13 @@ TrackReport TrackViewsClip(const TrackViewsRequest& request, const PipelineCallb
   const double solve_share = SolveShare(request);
   clock.Begin(kSolveStage);
   TrackSequenceOptions options = SolveOptionsOf(request, first);
-  ViewsProgress progress(views.size(), solve_share, callbacks);
-  options.progress = [&](const TrackProgress& at) { return progress.Report(at); };
+  bool cancelled = false;
+  options.progress = [&](const TrackProgress& at) {
+    cancelled = !callbacks.ReportProgress(at.stage, solve_share * at.fraction);
+    return !cancelled;
+  };
   TrackViewsResult result = TrackViews(ObservedViews(views), first.ForTracker(), options);
-  progress.End();
+  if (cancelled) throw Cancelled();
   TrackSequenceSummary& joint = result.joint.summary;
   joint.seconds.emplace_back("views alone", result.summary.seconds_alone);
   if (joint.IsUsable()) {
@@ -228,7 +153,10 @@ TrackReport TrackViewsClip(const TrackViewsRequest& request, const PipelineCallb
     }
   }
   report.solve = std::move(joint);
-  if (report.solve.IsUsable()) WriteRigOfViews(RigFileOf(request), &report);
+  if (report.solve.IsUsable()) {
+    report.outputs.push_back(RigFileOf(request));
+    WriteRig(report.outputs.back(), RigOf(report.views));
+  }
   WriteResults(request, first, result.joint.track, solve_share, callbacks, &clock, &report);
   return report;
 }

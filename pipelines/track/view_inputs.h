@@ -8,21 +8,11 @@
 
 #include "geometry/base/callbacks.h"
 #include "geometry/scene/rig.h"
+#include "pipelines/track/known_rig.h"
 #include "pipelines/track/track_inputs.h"
 #include "pipelines/track/track_request.h"
 
 namespace bodyloom {
-
-/// Use that is made of the file of cameras; what is left out is estimated.
-enum class KnownOfRig {
-  kIntrinsics,
-  kPoses,  ///< and poses, if the file has them
-  kClocks  ///< and clocks, if it is a rig's (data_tools/observations/rig_io.h)
-};
-/// "intrinsics", "poses" or "clocks".
-std::string ToString(KnownOfRig known);
-/// The other way; throws std::invalid_argument for another word.
-KnownOfRig KnownOfRigFromString(const std::string& word);
 
 /// The base's settings are those of all views, its video is the first view's, and its `detections` and `view` are not
 /// used.

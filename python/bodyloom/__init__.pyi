@@ -505,7 +505,7 @@ def track(
     progress: _Progress | None = None,
 ) -> Track: ...
 def run(
-    video: _Path,
+    video: _Path | Sequence[_Path],
     *,
     out: _Path | None = None,
     people: int = 0,
@@ -514,6 +514,7 @@ def run(
     fps: float | None = None,
     min_confidence: float = 0.0,
     view: str = "",
+    known: Literal["intrinsics", "poses", "clocks"] = "clocks",
     camera: Camera | _Path | None = None,
     focal_px: float | None = None,
     focal_35mm: float | None = None,

@@ -148,6 +148,7 @@ bool ClipFit::FindStart() {
   problem_.betas = initial.betas;
   if (input_.start != nullptr) StartFrom(*input_.start);
   views_ = ObserveViews(input_, problem_.layout, options_);
+  if (options_.ground.use_up) TurnViewsToVertical(input_, problem_.layout, &views_);
   problem_.shape_prior.mean = initial.betas;
   clock_.Record("initialise");
   if (!lifted_.frames.empty()) {

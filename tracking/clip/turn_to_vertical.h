@@ -5,12 +5,14 @@
 /// with its vertical: what it knows is the pose relative to up. Over each shot the landmarks, and the starting poses
 /// made of them, are turned about the pelvis by the smallest rotation from the lifter's mean up (EstimateUp()) to the
 /// joint estimate with the lines of the picture (JoinVerticals()), or to the vertical that is given. LiftedFrame::up
-/// stays the lifter's own.
+/// stays the lifter's own. In further views so do the lifter's errors of pitch, which would turn the cameras against
+/// each other.
 #pragma once
 
 #include <vector>
 
 #include "tracking/initialise/lifted_start.h"
+#include "tracking/initialise/view_observations.h"
 #include "tracking/problem/frame_layout.h"
 #include "tracking/problem/track_input.h"
 
@@ -25,5 +27,9 @@ struct StartFocal {
 /// neither lines nor a ground are known or the lifter's vertical is not clear.
 double TurnToVertical(const TrackSequenceInput& input, const StartFocal& focal, const std::vector<char>& cut_before,
                       LiftedStart* lifted, std::vector<FrameState>* states);
+
+/// The same for the further views, by the lines of their own pictures.
+void TurnViewsToVertical(const TrackSequenceInput& input, const FrameLayout& layout,
+                         std::vector<ViewObservations>* views);
 
 }  // namespace bodyloom

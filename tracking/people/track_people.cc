@@ -8,6 +8,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "tracking/clip/clip_fit.h"
+#include "tracking/clip/fits_progress.h"
 #include "tracking/clip/uncertainty.h"
 #include "tracking/problem/stature.h"
 #include "tracking/room/shared_scene.h"
@@ -40,33 +41,11 @@ struct OwnObservations {
   }
 };
 
-/// Fits of several people with one progress callback. Once it requests a stop, every further fit is stopped too.
-class Fits {
- public:
-  Fits(const TrackSequenceOptions& options, size_t num_fits) : options_(options), num_fits_(double(num_fits)) {}
-
-  TrackSequenceResult Run(const TrackSequenceInput& input, CameraKnowledge knowledge) {
-    TrackSequenceOptions options = options_;
-    options.camera_knowledge = knowledge;
-    if (options_.progress) {
-      options.progress = [this](TrackProgress at) {
-        at.fraction = (done_ + at.fraction) / num_fits_;
-        stopped_ = stopped_ || !options_.progress(at);
-        return !stopped_;
-      };
-    }
-    TrackSequenceResult result = FitClip(input, options);
-    ++done_;
-    return result;
-  }
-  [[nodiscard]] bool stopped() const { return stopped_; }
-
- private:
-  const TrackSequenceOptions& options_;
-  double num_fits_;
-  int done_ = 0;
-  bool stopped_ = false;
-};
+TrackSequenceResult FitPerson(const TrackSequenceInput& input, CameraKnowledge knowledge, FitsProgress* fits) {
+  TrackSequenceOptions options = fits->NextFit();
+  options.camera_knowledge = knowledge;
+  return FitClip(input, options);
+}
 
 void CheckOneCamera(const std::vector<TrackSequenceInput>& people) {
   BODYLOOM_CHECK(!people.empty(), "track: nobody to track");
@@ -109,26 +88,14 @@ SharedScene Join(const std::vector<TrackSequenceResult>& people, const FocalPrio
   return JoinScenes(summaries, prior, ground);
 }
 
-/// All tracks in one world.
-void ShareWorld(TrackPeopleResult* result) {
-  std::vector<MatrixX3d> joints;
-  for (const TrackSequenceResult& person : result->people) {
-    joints.insert(joints.end(), person.track.joints.begin(), person.track.joints.end());
-  }
-  const WorldFrame world = WorldOfScene(result->summary.scene, joints);
-  for (TrackSequenceResult& person : result->people) {
-    if (person.summary.IsUsable()) person.track.world = world;
-  }
-}
-
 /// Fits everybody again with the one scale of the camera's path, if there is one.
-void TakeOneCameraScale(std::vector<TrackSequenceInput>* people, Fits* fits, CameraKnowledge knowledge,
+void TakeOneCameraScale(std::vector<TrackSequenceInput>* people, FitsProgress* fits, CameraKnowledge knowledge,
                         TrackPeopleResult* result) {
   const double scale_m = SharedCameraScale(result->people);
   for (size_t i = 0; scale_m > 0 && i < people->size() && !fits->stopped(); ++i) {
     (*people)[i].camera_scale_m = scale_m;
     if (!result->people[i].summary.IsUsable()) continue;
-    TrackSequenceResult again = fits->Run((*people)[i], knowledge);
+    TrackSequenceResult again = FitPerson((*people)[i], knowledge, fits);
     if (!again.summary.IsUsable() || fits->stopped()) continue;
     result->people[i] = std::move(again);
     result->summary.fitted_again[i] = 1;
@@ -149,13 +116,13 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   const bool alone = n == 1 || options.camera_knowledge == CameraKnowledge::kWeak;
   const bool unknown_focal = options.camera_knowledge == CameraKnowledge::kUnknownFocal;
   const bool shares_path_scale = n > 1 && people[0].camera_from_scene != nullptr && people[0].camera_scale_m == 0;
-  Fits fits(options, (alone ? n : unknown_focal ? 3 * n : 2 * n) + (shares_path_scale ? n : 0));
+  FitsProgress fits(options, (alone ? n : unknown_focal ? 3 * n : 2 * n) + (shares_path_scale ? n : 0));
   TrackPeopleResult result;
   result.summary.hidden.resize(n);
   result.summary.fitted_again.resize(n, 0);
   int width = 0, height = 0;
   for (const TrackSequenceInput& person : people) {
-    result.people.push_back(fits.Run(person, options.camera_knowledge));
+    result.people.push_back(FitPerson(person, options.camera_knowledge, &fits));
     const auto& [track, summary] = result.people.back();
     if (summary.IsUsable()) width = track.camera.width, height = track.camera.height;
   }
@@ -175,7 +142,8 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   const auto fit_again = [&](size_t i) {
     own[i].CopyTo(&people[i]);
     if (shares_focal) people[i].camera = MakePinhole(width, height, scene.focal_px);
-    TrackSequenceResult again = fits.Run(people[i], shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge);
+    TrackSequenceResult again =
+        FitPerson(people[i], shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge, &fits);
     if (!again.summary.IsUsable() || fits.stopped()) return;
     result.people[i] = std::move(again);
     result.summary.fitted_again[i] = 1;
@@ -206,7 +174,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
       AddFocalSpread(scene.focal_log_sigma, &result.people[i].track);
     }
   }
-  ShareWorld(&result);
+  ShareWorld(scene, &result.people);
   return result;
 }
 

@@ -36,6 +36,7 @@ struct ViewInput {
   double offset_s = 0, rate = 0;
   double offset_sigma_s = 0.1;  ///< of the offset, where it is not known
   bool clock_known = false;
+  const PictureVertical* picture_vertical = nullptr;  ///< as of TrackSequenceInput, in this camera's axes
 };
 
 /// A pose of every frame to start from, which does not enter the cost.

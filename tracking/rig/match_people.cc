@@ -12,9 +12,10 @@ namespace {
 
 constexpr double kAgreementStep_s = 1.0 / 15;
 
-/// Greedy matching of people under a hypothesis.
+/// Greedy matching under a hypothesis; `unlike_m2`: squared distance of poses that have nothing to do with each other,
+/// of each pair.
 MatchedViews MatchUnder(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other,
-                        const MotionAlignment& alignment) {
+                        const MotionAlignment& alignment, const Eigen::MatrixXd& unlike_m2) {
   std::vector<std::tuple<double, int, int>> pairs;
   std::vector<std::vector<MotionAgreement>> agreements(first.size(), std::vector<MotionAgreement>(other.size()));
   for (size_t i = 0; i < first.size(); ++i) {
@@ -22,10 +23,11 @@ MatchedViews MatchUnder(const std::vector<ViewMotion>& first, const std::vector<
       if (first[i].points.empty() || other[j].points.empty()) continue;
       MotionAgreement& agreement = agreements[i][j];
       agreement = AgreementOf(first[i], other[j], alignment.b_from_a, alignment.offset_s);
-      const double share = agreement.distance_m / kMaxMotionDistance_m, apart = agreement.apart_m / kMaxApart_m;
-      if (agreement.overlap_s <= 0 || share >= 1 || apart >= 1) continue;
-      pairs.emplace_back(agreement.overlap_s * (1 - share * share) * (1 - apart * apart), static_cast<int>(i),
-                         static_cast<int>(j));
+      const double apart = agreement.apart_m / kMaxApart_m;
+      const double less_m2 =
+          unlike_m2(static_cast<int>(i), static_cast<int>(j)) - agreement.distance_m * agreement.distance_m;
+      if (agreement.overlap_s <= 0 || agreement.distance_m >= kMaxMotionDistance_m || apart >= 1) continue;
+      pairs.emplace_back(agreement.overlap_s * less_m2 * (1 - apart * apart), static_cast<int>(i), static_cast<int>(j));
     }
   }
   std::sort(pairs.rbegin(), pairs.rend());
@@ -68,21 +70,37 @@ MotionAgreement AgreementOf(const ViewMotion& a, const ViewMotion& b, const Came
   return agreement;
 }
 
+MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other,
+                         const MotionAlignment& alignment) {
+  const Eigen::Index rows = static_cast<Eigen::Index>(first.size()), columns = static_cast<Eigen::Index>(other.size());
+  return MatchUnder(first, other, alignment,
+                    Eigen::MatrixXd::Constant(rows, columns, kMaxMotionDistance_m * kMaxMotionDistance_m));
+}
+
 MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other) {
+  const double limit = kMaxMotionDistance_m;
+  Eigen::MatrixXd unlike_m2 = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(first.size()),
+                                                        static_cast<Eigen::Index>(other.size()), limit * limit);
   MatchedViews best;
   best.person_of.assign(first.size(), -1);
   best.agreement.resize(first.size());
-  for (const ViewMotion& a : first) {
-    for (const ViewMotion& b : other) {
-      if (a.points.empty() || b.points.empty()) continue;
-      const MotionAlignment alignment = AlignMotions(a, b);
-      if (!alignment.found) {
-        if (best.alignment.why.empty()) best.alignment.why = alignment.why;
-        continue;
+  std::vector<MotionAlignment> hypotheses;
+  for (size_t i = 0; i < first.size(); ++i) {
+    for (size_t j = 0; j < other.size(); ++j) {
+      if (first[i].points.empty() || other[j].points.empty()) continue;
+      const MotionAlignment alignment = AlignMotions(first[i], other[j]);
+      if (alignment.found) {
+        hypotheses.push_back(alignment);
+        const double unlike = std::max(limit, alignment.other_distance_m);
+        unlike_m2(static_cast<int>(i), static_cast<int>(j)) = unlike * unlike;
+      } else if (best.alignment.why.empty()) {
+        best.alignment.why = alignment.why;
       }
-      MatchedViews matched = MatchUnder(first, other, alignment);
-      if (matched.score > best.score) best = std::move(matched);
     }
+  }
+  for (const MotionAlignment& hypothesis : hypotheses) {
+    MatchedViews matched = MatchUnder(first, other, hypothesis, unlike_m2);
+    if (matched.score > best.score) best = std::move(matched);
   }
   return best;
 }

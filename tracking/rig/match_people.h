@@ -4,7 +4,9 @@
 /// Every pair of a person of one view and a person of another that moves alike (align_motions.h) is a hypothesis about
 /// both cameras and clocks; under it every other pair has an agreement, too: the distance of the points about their
 /// centre and that of the centres. The hypothesis is taken under which the people agree best in sum when each is
-/// matched with at most one, greedily. So two people who dance the same steps are told by where they stand.
+/// matched with at most one, greedily; a pair counts by its overlap and by how much nearer it is than poses that have
+/// nothing to do with each other (d₀ of align_motions.h), so that whoever hardly moves is little evidence. Two people who
+/// dance the same steps are told by where they stand.
 #pragma once
 
 #include <vector>
@@ -26,9 +28,12 @@ struct MatchedViews {
   std::vector<int> person_of;              ///< of each person of the first view: the one in the other view, −1: none
   std::vector<MotionAgreement> agreement;  ///< of each of them with that person
   MotionAlignment alignment;               ///< of the pair that tells it best; not found: no pair moves alike
-  double score = 0;                        ///< of all matched people: Σ overlap (1 − (distance / limit)²)
+  double score = 0;  ///< of all matched people: Σ overlap (d₀ − distance²) (1 − (apart / kMaxApart_m)²), m² s
 };
 MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other);
+/// The same under one hypothesis, as for cameras and clocks that are known: b_from_a and offset_s are used.
+MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other,
+                         const MotionAlignment& alignment);
 
 /// Centres of one person by two monocular tracks lie so far apart at most: their depths are wrong by a tenth.
 inline constexpr double kMaxApart_m = 1.2;

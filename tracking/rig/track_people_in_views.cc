@@ -1,37 +1,183 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/rig/track_people_in_views.h"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "geometry/base/check.h"
+#include "geometry/base/stopwatch.h"
+#include "geometry/scene/camera_path.h"
+#include "geometry/scene/rig.h"
 #include "tracking/clip/clip_fit.h"
+#include "tracking/clip/fits_progress.h"
 
 namespace bodyloom {
 namespace {
 
-/// The views that show a person, by index, with the person's observations.
-std::vector<ObservedView> ViewsOf(const std::vector<ObservedScene>& scenes, const std::vector<int>& person_in_view,
-                                  std::vector<int>* index) {
-  std::vector<ObservedView> views;
-  index->clear();
-  for (size_t v = 0; v < scenes.size(); ++v) {
-    if (person_in_view[v] < 0) continue;
-    views.push_back(scenes[v].camera);
-    views.back().keypoints = scenes[v].people[person_in_view[v]];
-    index->push_back(static_cast<int>(v));
-  }
-  return views;
+bool IsMatched(const std::vector<int>& person_in_view) {
+  return std::any_of(person_in_view.begin() + 1, person_in_view.end(), [](int person) { return person >= 0; });
 }
 
-/// Agreement of a person's views with the first one, in sum.
-double ScoreOf(const std::vector<MatchedViews>& views, size_t person) {
-  double score = 0;
-  for (const MatchedViews& view : views) {
-    if (view.person_of[person] < 0) continue;
-    const double share = view.agreement[person].distance_m / kMaxMotionDistance_m;
-    score += view.agreement[person].overlap_s * (1 - share * share);
+size_t NumPeople(const std::vector<ObservedScene>& scenes) {
+  size_t count = 0;
+  for (const ObservedScene& scene : scenes) count += scene.people.size();
+  return count;
+}
+
+/// People of several views, as each view alone shows them.
+class PeopleInViews {
+ public:
+  PeopleInViews(const std::vector<ObservedScene>& scenes, const TrackSequenceInput& common, FitsProgress* fits)
+      : common_(common), fits_(fits), keypoints_(scenes.size()), alone_(scenes.size()) {
+    for (size_t v = 0; v < scenes.size(); ++v) {
+      cameras_.push_back(scenes[v].camera);
+      for (const KeypointSequence* person : scenes[v].people) {
+        if (fits->stopped()) return;
+        keypoints_[v].push_back(*person);
+        ObservedView view = scenes[v].camera;
+        view.keypoints = person;
+        alone_[v].push_back(FitViewAlone(view, common, fits->NextFit()));
+      }
+    }
   }
-  return score;
+
+  /// People of a view matched with those of the first.
+  [[nodiscard]] MatchedViews MatchWithFirst(size_t v) const {
+    const std::vector<ViewMotion> first = MotionsOf(0), other = MotionsOf(v);
+    if (!cameras_[v].camera_from_rig || !cameras_[v].offset_s) return MatchPeople(first, other);
+    MotionAlignment known;
+    known.b_from_a = Compose(*cameras_[v].camera_from_rig, Inverse(*cameras_[0].camera_from_rig));
+    known.offset_s = *cameras_[v].offset_s;
+    return MatchPeople(first, other, known);
+  }
+
+  /// Evidence for cameras and clocks in the motion of a person whom several views show, in sum over the views
+  /// (MotionAlignment::score): somebody who hardly moves agrees with everything.
+  [[nodiscard]] double EvidenceOf(const std::vector<int>& person_in_view) const {
+    double score = 0;
+    const ViewMotion first = MotionOf(alone_[0][person_in_view[0]]);
+    for (size_t v = 1; v < person_in_view.size(); ++v) {
+      if (person_in_view[v] < 0) continue;
+      const MotionAlignment alignment = AlignMotions(first, MotionOf(alone_[v][person_in_view[v]]));
+      if (alignment.found) score += alignment.score;
+    }
+    return score;
+  }
+
+  /// Fits a person in all views that show them; `index` are these views.
+  TrackViewsResult FitTogether(const std::vector<int>& person_in_view, const KnownGround* ground,
+                               std::vector<int>* index) {
+    std::vector<ObservedView> views;
+    std::vector<TrackSequenceResult> starts;
+    index->clear();
+    for (size_t v = 0; v < cameras_.size(); ++v) {
+      const int person = person_in_view[v];
+      if (person < 0) continue;
+      views.push_back(cameras_[v]);
+      views.back().keypoints = &keypoints_[v][person];
+      starts.push_back(alone_[v][person]);
+      index->push_back(static_cast<int>(v));
+    }
+    TrackSequenceInput shared = common_;
+    if (shared.ground == nullptr) shared.ground = ground;
+    return FitViewsTogether(views, std::move(starts), shared, fits_->NextFit());
+  }
+
+  TrackSequenceResult FitInFirst(size_t person, const KnownGround* ground) {
+    ObservedView first = cameras_[0];
+    first.keypoints = &keypoints_[0][person];
+    TrackSequenceInput input = InputOfView(first, common_);
+    input.ground = common_.ground != nullptr ? common_.ground : ground;
+    TrackSequenceOptions options = fits_->NextFit();
+    options.camera_knowledge = first.knowledge;
+    return FitClip(input, options);
+  }
+
+  /// The first view's camera is known from now on.
+  void KnowFirst(const Camera& camera) {
+    cameras_[0].knowledge = CameraKnowledge::kKnown;
+    cameras_[0].camera = camera;
+    cameras_[0].camera_from_rig = CameraPose();
+  }
+  /// So is a further one, and its clock: all times become those of the first one's clock.
+  void Know(int v, const ViewSummary& found, double middle_s) {
+    ObservedView& view = cameras_[v];
+    view.knowledge = CameraKnowledge::kKnown;
+    view.camera = found.camera;
+    view.camera_from_rig = found.camera_from_scene;
+    view.offset_s = 0;
+    RigCamera clock;
+    clock.offset_s = found.offset_s;
+    clock.rate = found.rate;
+    clock.middle_s = middle_s;
+    const auto retime = [&](std::vector<double>* times) {
+      for (double& time : *times) time = clock.FirstTimeAt(time);
+    };
+    for (KeypointSequence& person : keypoints_[v]) retime(&person.timestamps);
+    for (TrackSequenceResult& person : alone_[v]) retime(&person.track.motion.timestamps);
+  }
+
+ private:
+  [[nodiscard]] std::vector<ViewMotion> MotionsOf(size_t v) const {
+    std::vector<ViewMotion> motions;
+    for (const TrackSequenceResult& person : alone_[v]) motions.push_back(MotionOf(person));
+    return motions;
+  }
+
+  TrackSequenceInput common_;
+  FitsProgress* fits_;
+  std::vector<ObservedView> cameras_;
+  std::vector<std::vector<KeypointSequence>> keypoints_;
+  std::vector<std::vector<TrackSequenceResult>> alone_;
+};
+
+/// The leader's views are known from here on. False, with the reasons, if the fit of these failed.
+bool KnowCameras(const TrackViewsResult& led, const std::vector<int>& index, PeopleInViews* people,
+                 TrackPeopleInViewsResult* result) {
+  const TrackSequenceSummary& joint = led.joint.summary;
+  for (size_t i = 1; i < index.size(); ++i) {
+    result->left_out[index[i]] = joint.IsUsable() ? led.summary.alignment[i].why : joint.message;
+  }
+  if (!joint.IsUsable()) return false;
+  const std::vector<double>& times = led.joint.track.motion.timestamps;
+  people->KnowFirst(led.joint.track.camera);
+  size_t next = 0;
+  for (size_t i = 1; i < index.size(); ++i) {
+    if (led.summary.used[i] == 0) continue;
+    const ViewSummary& camera = joint.views[next++];
+    people->Know(index[i], camera, 0.5 * (times.front() + times.back()));
+    result->cameras[index[i] - 1] = camera;
+    result->left_out[index[i]].clear();
+  }
+  return true;
+}
+
+/// Fits a person with the cameras as they are known, and notes the views that were used.
+TrackSequenceResult FitPersonInViews(size_t p, const KnownGround* ground, PeopleInViews* people,
+                                     std::vector<int>* person_in_view) {
+  if (IsMatched(*person_in_view)) {
+    std::vector<int> index;
+    TrackViewsResult fitted = people->FitTogether(*person_in_view, ground, &index);
+    if (fitted.joint.summary.IsUsable()) {
+      for (size_t i = 1; i < index.size(); ++i) {
+        if (fitted.summary.used[i] == 0) (*person_in_view)[index[i]] = -1;
+      }
+      return std::move(fitted.joint);
+    }
+    std::fill(person_in_view->begin() + 1, person_in_view->end(), -1);
+  }
+  return people->FitInFirst(p, ground);
+}
+
+/// Vertical and ground of all fits. Sizes are the views' business: they tell distances.
+SharedScene SceneOfPeople(const std::vector<TrackSequenceResult>& people, const std::optional<FocalPrior>& prior) {
+  std::vector<TrackSequenceSummary> summaries;
+  for (const TrackSequenceResult& person : people) summaries.push_back(person.summary);
+  const Camera& camera = people[0].track.camera;
+  CommonGroundOptions ground;
+  ground.size_sigma = 0;
+  return JoinScenes(summaries, prior.value_or(FocalPrior::ForImage(camera.width, camera.height)), ground);
 }
 
 }  // namespace
@@ -42,86 +188,62 @@ TrackPeopleInViewsResult TrackPeopleInViews(const std::vector<ObservedScene>& sc
   BODYLOOM_CHECK(!scenes[0].people.empty(), "track people in views: the first view has no people");
   const size_t V = scenes.size(), P = scenes[0].people.size();
   TrackPeopleInViewsResult result;
-  std::vector<std::vector<TrackSequenceResult>> alone(V);
-  std::vector<std::vector<ViewMotion>> motions(V);
-  for (size_t v = 0; v < V; ++v) {
-    ObservedView view = scenes[v].camera;
-    for (const KeypointSequence* person : scenes[v].people) {
-      view.keypoints = person;
-      alone[v].push_back(FitViewAlone(view, common, options));
-      motions[v].push_back(MotionOf(alone[v].back()));
-    }
-  }
+  result.people.resize(P);
   result.person_in_view.assign(P, std::vector<int>(V, -1));
-  for (size_t p = 0; p < P; ++p) result.person_in_view[p][0] = static_cast<int>(p);
+  result.left_out.resize(V);
+  result.cameras.resize(V - 1);
+  FitsProgress fits(options, NumPeople(scenes) + (P > 1 ? 2 : 1) * P);
+  const Stopwatch watch;
+  PeopleInViews people(scenes, common, &fits);
+  result.seconds_alone = watch.seconds();
+  if (fits.stopped()) return result;
+
+  std::vector<MatchedViews> matched;
   for (size_t v = 1; v < V; ++v) {
-    result.views.push_back(MatchPeople(motions[0], motions[v]));
-    for (size_t p = 0; p < P; ++p) result.person_in_view[p][v] = result.views.back().person_of[p];
+    matched.push_back(people.MatchWithFirst(v));
+    const std::string& why = matched.back().alignment.why;
+    result.left_out[v] = why.empty() ? "it shows nobody whom the first view shows" : why;
+    for (size_t p = 0; p < P; ++p) result.person_in_view[p][v] = matched.back().person_of[p];
   }
+  for (size_t p = 0; p < P; ++p) result.person_in_view[p][0] = static_cast<int>(p);
   double best = 0;
   for (size_t p = 0; p < P; ++p) {
-    const double score = ScoreOf(result.views, p);
-    if (score > best) {
-      best = score;
-      result.leader = static_cast<int>(p);
-    }
+    const double score = IsMatched(result.person_in_view[p]) ? people.EvidenceOf(result.person_in_view[p]) : 0;
+    if (score <= best) continue;
+    best = score;
+    result.leader = static_cast<int>(p);
   }
-
-  std::vector<int> index;
-  const auto fit = [&](const std::vector<ObservedScene>& with, size_t p) {
-    const std::vector<ObservedView> views = ViewsOf(with, result.person_in_view[p], &index);
-    std::vector<TrackSequenceResult> starts;
-    for (const int v : index) starts.push_back(alone[v][result.person_in_view[p][v]]);
-    return FitViewsTogether(views, std::move(starts), common, options);
-  };
-  result.people.resize(P);
-  result.used.assign(V, 0);
-  result.used[0] = 1;
-  std::vector<ObservedScene> found = scenes;
+  double focal_log_sigma = 0;
   if (result.leader >= 0) {
-    TrackViewsResult led = fit(scenes, result.leader);
-    const TrackSequenceSummary& joint = led.joint.summary;
-    found[0].camera.knowledge = CameraKnowledge::kKnown;
-    found[0].camera.camera = led.joint.track.camera;
-    found[0].camera.camera_from_rig = CameraPose();
-    size_t next = 0;
-    for (size_t i = 1; i < index.size(); ++i) {
-      if (led.summary.used[i] == 0) continue;
-      const ViewSummary& camera = joint.views[next++];
-      ObservedView& view = found[index[i]].camera;
-      result.used[index[i]] = 1;
-      view.knowledge = CameraKnowledge::kKnown;
-      view.camera = camera.camera;
-      view.camera_from_rig = camera.camera_from_scene;
-      view.offset_s = camera.offset_s;
-    }
-    result.cameras = joint.views;
+    std::vector<int> index;
+    TrackViewsResult led = people.FitTogether(result.person_in_view[result.leader], nullptr, &index);
+    const bool known = KnowCameras(led, index, &people, &result);
+    focal_log_sigma = led.joint.summary.focal_log_sigma;
     result.people[result.leader] = std::move(led.joint);
-    if (!result.people[result.leader].summary.IsUsable()) {
-      result.why = result.people[result.leader].summary.message;
-      result.leader = -1;
-    }
-  } else {
-    result.why =
-        result.views[0].alignment.why.empty() ? "nobody is seen in another view" : result.views[0].alignment.why;
+    if (!known) result.leader = -1;
   }
-  for (size_t p = 0; p < P; ++p) {
-    if (static_cast<int>(p) == result.leader) continue;
-    int others = 0;
+  if (fits.stopped()) return result;
+  if (result.leader < 0) {
+    for (TrackSequenceResult& person : result.people) person.summary.message = result.left_out[1];
+    return result;
+  }
+  for (std::vector<int>& in_view : result.person_in_view) {
     for (size_t v = 1; v < V; ++v) {
-      if (result.used[v] == 0) result.person_in_view[p][v] = -1;
-      others += result.person_in_view[p][v] >= 0 ? 1 : 0;
+      if (!result.left_out[v].empty()) in_view[v] = -1;
     }
-    if (result.leader >= 0 && others > 0) result.people[p] = fit(found, p).joint;
-    if (result.people[p].summary.IsUsable()) continue;
-    ObservedView first = found[0].camera;
-    first.keypoints = scenes[0].people[p];
-    TrackSequenceInput input = InputOfView(first, common);
-    input.ground = common.ground;
-    TrackSequenceOptions by_itself = options;
-    by_itself.camera_knowledge = first.knowledge;
-    result.people[p] = FitClip(input, by_itself);
   }
+  for (size_t p = 0; p < P && !fits.stopped(); ++p) {
+    if (static_cast<int>(p) == result.leader) continue;
+    result.people[p] = FitPersonInViews(p, nullptr, &people, &result.person_in_view[p]);
+  }
+  result.scene = SceneOfPeople(result.people, scenes[0].camera.focal_prior);
+  result.scene.focal_px = result.people[result.leader].track.camera.fx;
+  result.scene.focal_log_sigma = focal_log_sigma;
+  for (size_t p = 0; P > 1 && result.scene.has_up && common.ground == nullptr && p < P && !fits.stopped(); ++p) {
+    TrackSequenceResult again = FitPersonInViews(p, &result.scene.ground, &people, &result.person_in_view[p]);
+    if (again.summary.IsUsable() && !fits.stopped()) result.people[p] = std::move(again);
+  }
+  ShareWorld(result.scene, &result.people);
   return result;
 }
 

@@ -14,7 +14,9 @@
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/time_bracket.h"
 #include "tracking/clip/clip_fit.h"
+#include "tracking/clip/fits_progress.h"
 #include "tracking/problem/moving_camera.h"
+#include "tracking/rig/match_people.h"
 
 namespace bodyloom {
 namespace {
@@ -39,14 +41,31 @@ struct PlacedView {
 
 /// The tree of best agreement from the first view: each view's neighbour, nearer to the first, and the alignment that
 /// takes the neighbour's frame and clock to its own. Views that agree with none keep neighbour −1. Returns where the
-/// tree places each view that is used.
-std::vector<PlacedView> FindTree(const std::vector<ViewMotion>& motions, TrackViewsSummary* summary) {
+/// tree places each view that is used. Views whose pose and clock are known need only agree with the first, which a
+/// person who stands still does, too.
+std::vector<PlacedView> FindTree(const std::vector<ObservedView>& views, const std::vector<ViewMotion>& motions,
+                                 TrackViewsSummary* summary) {
   const int V = static_cast<int>(motions.size());
   summary->alignment.assign(V, MotionAlignment());
   summary->neighbour.assign(V, -1);
   summary->used.assign(V, 0);
   summary->used[0] = 1;
   std::vector<PlacedView> placed(V);
+  for (int v = 1; v < V; ++v) {
+    if (!views[v].camera_from_rig || !views[v].offset_s || motions[v].points.empty()) continue;
+    const PlacedView known = {Compose(*views[v].camera_from_rig, Inverse(*views[0].camera_from_rig)),
+                              *views[v].offset_s};
+    const MotionAgreement agreement = AgreementOf(motions[0], motions[v], known.from_first, known.offset_s);
+    if (agreement.overlap_s == 0 || agreement.distance_m > kMaxMotionDistance_m) continue;
+    placed[v] = known;
+    summary->used[v] = 1;
+    summary->neighbour[v] = 0;
+    MotionAlignment& alignment = summary->alignment[v];
+    alignment.found = true;
+    alignment.b_from_a = known.from_first;
+    alignment.offset_s = known.offset_s;
+    alignment.distance_m = agreement.distance_m;
+  }
   std::vector<std::vector<std::optional<MotionAlignment>>> pairs(V, std::vector<std::optional<MotionAlignment>>(V));
   for (int added = 0; added + 1 < V; ++added) {
     int from = -1, to = -1;
@@ -149,6 +168,7 @@ TrackSequenceInput InputOfView(const ObservedView& view, const TrackSequenceInpu
   input.keypoints = view.keypoints;
   input.camera = view.camera;
   input.focal_prior = view.focal_prior;
+  input.picture_vertical = view.picture_vertical;
   return input;
 }
 
@@ -175,10 +195,11 @@ ViewMotion MotionOf(const TrackSequenceResult& alone) {
 TrackViewsResult TrackViews(const std::vector<ObservedView>& views, const TrackSequenceInput& common,
                             const TrackSequenceOptions& options) {
   const Stopwatch watch;
+  FitsProgress fits(options, views.size() + 1);
   std::vector<TrackSequenceResult> alone;
-  for (const ObservedView& view : views) alone.push_back(FitViewAlone(view, common, options));
+  for (const ObservedView& view : views) alone.push_back(FitViewAlone(view, common, fits.NextFit()));
   const double seconds_alone = watch.seconds();
-  TrackViewsResult result = FitViewsTogether(views, std::move(alone), common, options);
+  TrackViewsResult result = FitViewsTogether(views, std::move(alone), common, fits.NextFit());
   result.summary.seconds_alone = seconds_alone;
   result.summary.seconds += seconds_alone;
   return result;
@@ -202,7 +223,7 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
     joint.message = "the first view: " + result.alone[0].summary.message;
     return result;
   }
-  const std::vector<PlacedView> placed = FindTree(motions, &summary);
+  const std::vector<PlacedView> placed = FindTree(views, motions, &summary);
   const bool any = std::any_of(summary.used.begin() + 1, summary.used.end(), [](char used) { return used != 0; });
   if (!any) {
     joint.message = "no other view shows the motion of the first: " +
@@ -221,6 +242,7 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
     other.camera = view.camera;
     if (view.knowledge != CameraKnowledge::kKnown) other.camera.fx = result.alone[v].track.camera.fx;
     other.focal_prior = view.focal_prior;
+    other.picture_vertical = view.picture_vertical;
     other.pose_known = view.camera_from_rig.has_value();
     other.camera_from_scene =
         other.pose_known ? Compose(*view.camera_from_rig, Inverse(*views[0].camera_from_rig)) : placed[v].from_first;

@@ -143,4 +143,15 @@ WorldFrame WorldOfScene(const SharedScene& scene, const std::vector<MatrixX3d>& 
   return world;
 }
 
+void ShareWorld(const SharedScene& scene, std::vector<TrackSequenceResult>* people) {
+  std::vector<MatrixX3d> joints;
+  for (const TrackSequenceResult& person : *people) {
+    joints.insert(joints.end(), person.track.joints.begin(), person.track.joints.end());
+  }
+  const WorldFrame world = WorldOfScene(scene, joints);
+  for (TrackSequenceResult& person : *people) {
+    if (person.summary.IsUsable()) person.track.world = world;
+  }
+}
+
 }  // namespace bodyloom

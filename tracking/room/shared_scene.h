@@ -44,5 +44,7 @@ WorldFrame WorldOfGround(const GroundSummary& ground, const std::vector<MatrixX3
 
 /// The same for several people in one view, with the `joints` of all of them.
 WorldFrame WorldOfScene(const SharedScene& scene, const std::vector<MatrixX3d>& joints);
+/// Gives this world to all usable tracks.
+void ShareWorld(const SharedScene& scene, std::vector<TrackSequenceResult>* people);
 
 }  // namespace bodyloom

@@ -69,6 +69,29 @@ TEST(ClipPage, HoldsTheClipForItsScript) {
   EXPECT_EQ(ScriptOf(html, "file-0"), Base64("HIERARCHY"));
 }
 
+TEST(ClipPage, FurtherCamerasHaveVideosButtonsAndPlaces) {
+  ClipPageContent content = TwoFrames();
+  EXPECT_THAT(ClipPageHtml(content), Not(HasSubstr("<figure>")));
+  content.view_name = "left";
+  ClipPageView& view = content.views.emplace_back();
+  view.name = "<right>";
+  view.camera = content.camera;
+  view.camera.fx = 900;
+  view.camera_from_world.camera_from_world_translation = {0, 0, 3};
+  view.video_mp4 = "mp4 bytes";
+  const std::string html = ClipPageHtml(content);
+  EXPECT_THAT(html, HasSubstr("<figcaption>&lt;right&gt;</figcaption>"));
+  EXPECT_THAT(html, HasSubstr("<button id=\"view-camera\">Camera left</button>"));
+  EXPECT_THAT(html, HasSubstr("<button id=\"view-camera-1\">Camera &lt;right&gt;</button>"));
+  EXPECT_THAT(html, HasSubstr("<video id=\"picture-1\""));
+  EXPECT_EQ(ScriptOf(html, "video-1"), Base64("mp4 bytes"));
+  const Json clip = Json::parse(ScriptOf(html, "clip"));
+  EXPECT_EQ(clip["views"][0]["K"][0][0], 900);
+  EXPECT_EQ(clip["views"][0]["world_from_camera"], Json::parse("[[1,0,0,0],[0,1,0,0],[0,0,1,-3]]"));
+  content.views[0].video_mp4.clear();
+  EXPECT_THAT(ClipPageHtml(content), Not(HasSubstr("id=\"picture-1\"")));
+}
+
 TEST(ClipPage, TextIsEscaped) {
   const std::string html = ClipPageHtml(TwoFrames());
   EXPECT_THAT(html, HasSubstr("<title>clip &lt;1&gt;</title>"));

@@ -251,7 +251,7 @@ TEST_F(TrackViewsClipTest, CamerasAreFoundByNameOrByOrder) {
   file[2].name = "d";
   write();
   EXPECT_THAT([&] { LoadViewInputs(request); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("2 cameras in the order of --detections")));
+              ThrowsMessage<std::runtime_error>(HasSubstr("2 cameras in the order of the views")));
   request.image_width = 64;
   request.image_height = 48;
   file.pop_back();

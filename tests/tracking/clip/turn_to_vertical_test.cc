@@ -80,6 +80,32 @@ TEST(TurnToVertical, LinesTurnByTheirShareOfTheInformation) {
               1e-6);
 }
 
+TEST(TurnToVertical, FurtherViewsTurnByTheirOwnLines) {
+  Clip own(8, 8);
+  PictureVertical lines;
+  lines.found = true;
+  lines.focal_px = 1000;
+  const Vector3d up(0, -1, 0);
+  lines.covariance = kDegree * kDegree * (Matrix3d::Identity() - up * up.transpose());
+  std::vector<ViewInput> views(2);
+  views[1].picture_vertical = &lines;
+  TrackSequenceInput input;
+  input.views = &views;
+  FrameLayout layout;
+  for (int v = 0; v < 2; ++v) layout.AddView({CameraKnowledge::kKnown, MakePinhole(640, 480, 1000), true, true});
+  std::vector<ViewObservations> seen(2);
+  for (ViewObservations& view : seen) {
+    view.lifted = own.lifted.frames;
+    view.keypoints.timestamps.assign(view.lifted.size(), 0);
+    for (size_t t = 0; t < view.lifted.size(); ++t) view.keypoints.timestamps[t] = 0.04 * double(t);
+  }
+  TurnViewsToVertical(input, layout, &seen);
+  EXPECT_EQ(seen[0].lifted[2].points, own.lifted.frames[2].points) << "a view without lines stays";
+  input.picture_vertical = &lines;
+  TurnToVertical(input, {1000, 0}, std::vector<char>(10, 0), &own.lifted, &own.states);
+  EXPECT_LT((seen[1].lifted[2].points - own.lifted.frames[2].points).norm(), 1e-12) << "as the first view would";
+}
+
 TEST(TurnToVertical, NothingTurnsWithoutAVerticalOrBehindAMovingCamera) {
   TrackSequenceInput input;
   KnownGround ground;

@@ -28,6 +28,7 @@ using Eigen::Vector3d;
 
 constexpr double kUpSigmaDegrees = 180 / M_PI;
 constexpr double kKnownUpRad = 0.005;  ///< σ of a vertical that is given
+constexpr double kViewTurnRad = 0.05;  ///< σ of an estimated rotation between two views (docs/lab/two_views.md)
 
 /// A direction of the scene in a frame's camera.
 Vector3d InCamera(const FrameData& frame, const Vector3d& direction) {
@@ -102,7 +103,10 @@ ClipGround::ClipGround(const ClipTermInput& clip)
       lifted_(clip.lifted.frames),
       landmarks_(clip.lifted_landmarks),
       views_(clip.views),
-      why_not_(WhyNoGround(clip.input, clip.options)) {}
+      why_not_(WhyNoGround(clip.input, clip.options)) {
+  if (clip.input.views == nullptr) return;
+  for (const ViewInput& view : *clip.input.views) view_lines_.push_back(view.picture_vertical);
+}
 
 std::unique_ptr<ClipTerm> MakeClipGround(const ClipTermInput& clip) { return std::make_unique<ClipGround>(clip); }
 
@@ -149,6 +153,7 @@ void ClipGround::FindVertical(const SequenceProblem& problem, Shot* shot) const 
     }
   }
   JoinLines(problem, shot);
+  JoinLinesOfViews(problem, shot);
 }
 
 std::span<const LiftedFrame> ClipGround::FramesOfView(size_t v, const SequenceProblem& problem,
@@ -166,6 +171,22 @@ void ClipGround::JoinLines(const SequenceProblem& problem, Shot* shot) const {
   if (lines_ == nullptr || !shot->up.found) return;
   shot->joined =
       JoinVerticals(shot->up.up, shot->joined.sigma_rad, *lines_, std::exp(problem.log_focal), focal_log_sigma_);
+}
+
+void ClipGround::JoinLinesOfViews(const SequenceProblem& problem, Shot* shot) const {
+  for (size_t v = 0; known_ == nullptr && shot->up.found && v < view_lines_.size(); ++v) {
+    if (view_lines_[v] == nullptr) continue;
+    const ViewLayout& layout = problem.layout.views[v];
+    const Eigen::Matrix3d& R = problem.views[v].camera_from_scene.camera_from_world_rotation;
+    PictureVertical lines = *view_lines_[v];
+    if (layout.pose_column >= 0) lines.covariance += kViewTurnRad * kViewTurnRad * Eigen::Matrix3d::Identity();
+    JoinedVertical joined =
+        JoinVerticals(R * shot->joined.up, shot->joined.sigma_rad, lines, std::exp(problem.views[v].log_focal),
+                      layout.focal_column >= 0 ? layout.log_focal_sigma : 0);
+    if (!joined.used) continue;
+    joined.up = R.transpose() * joined.up;
+    shot->joined = joined;
+  }
 }
 
 void ClipGround::SetUpright(const Shot& shot, const Vector3d& up, SequenceProblem* problem) const {

@@ -57,6 +57,8 @@ class ClipGround : public ClipTerm {
                                                           const Shot& shot) const;
   /// Joins the lifter's vertical with the picture's lines, for the focal length of `problem`.
   void JoinLines(const SequenceProblem& problem, Shot* shot) const;
+  /// The same with the lines of further views, as they stand to the first.
+  void JoinLinesOfViews(const SequenceProblem& problem, Shot* shot) const;
   /// The plane that feet stand on in a shot whose vertical is found.
   [[nodiscard]] GroundPlane PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
                                        const std::vector<double>& timestamps, const JoinedVertical& vertical) const;
@@ -73,8 +75,9 @@ class ClipGround : public ClipTerm {
   const GroundOptions options_;
   const KeypointSequence* keypoints_;
   const KnownGround* known_;
-  const PictureVertical* lines_;  ///< null: none
-  double focal_log_sigma_ = 0;    ///< of the focal length that the fit begins with; 0: known
+  const PictureVertical* lines_;                    ///< null: none
+  std::vector<const PictureVertical*> view_lines_;  ///< likewise, of each further view
+  double focal_log_sigma_ = 0;                      ///< of the focal length that the fit begins with; 0: known
   const std::vector<LiftedFrame>& lifted_;
   const LiftedLandmarks& landmarks_;
   const std::vector<ViewObservations>& views_;

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Report of one camera of several: as text for a reader, and as JSON for a program.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "geometry/scene/rig.h"
+#include "tracking/problem/track_summary.h"
+
+namespace bodyloom {
+
+/// One camera of a track from several (TrackViewsClip(), TrackPeopleInVideos()).
+struct ViewReport {
+  RigCamera camera;        ///< as given or estimated, relative to the first; name
+  std::string video;       ///< of people who were detected in it
+  std::string detections;  ///< file
+  std::string left_out;    ///< the reason if the view was not used, in which case only the name is set of `camera`
+  std::string doubt;       ///< the reason to doubt that a view that was used shows the first one's motion; empty: none
+  int frames = 0;          ///< of the first view's clip that it shows, too
+  double fps = 0;          ///< median
+  double reprojection_median_px = 0;
+};
+
+/// The first view as the fit of all has it; `middle_s`: of its clip.
+ViewReport ReportOnFirstView(const TrackSequenceSummary& joint, const Camera& camera, double middle_s);
+/// A further view as the fit found it. `clock`: where it was known; else it has no clock.
+ViewReport ReportOnView(const ViewSummary& found, const RigCamera& clock, double middle_s);
+/// The reason to doubt that the view shows the first one's motion; empty if there is none.
+std::string DoubtAbout(const ViewReport& view, const ViewReport& first);
+
+/// Cameras and clocks of the views that were used.
+std::vector<RigCamera> RigOf(const std::vector<ViewReport>& views);
+
+/// One line for each view.
+std::string ToText(const std::vector<ViewReport>& views);
+/// Keys are listed in docs/command.md.
+nlohmann::ordered_json ToJson(const ViewReport& view);
+
+}  // namespace bodyloom
