@@ -96,7 +96,8 @@ Evaluation EvaluateFromPython(const TrackArgument& track_argument, const std::op
     }
   }
   return PythonCallbacks(progress).Run([&](const PipelineCallbacks& callbacks) {
-    return EvaluateTrack(request, *body_model, track->track, true_track ? &true_track->track : nullptr, callbacks);
+    return EvaluateTrack(request, *body_model, track->track, {true_track ? &true_track->track : nullptr, nullptr},
+                         callbacks);
   });
 }
 
