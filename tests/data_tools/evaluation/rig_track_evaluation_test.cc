@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -158,7 +159,7 @@ TEST(RigTrackEvaluation, ATrackOfAnotherViewIsCarriedThere) {
   rig[1].rate = 1e-3;
   rig[1].middle_s = 1;
   Track truth = TrackOfTimes(Times());
-  truth.world = WorldOverGround(Vector3d(0, -1, 0), 1.2);
+  truth.world = WorldOverGround(Vector3d(0.2, -1, 0.1), 1.2);
   truth.world->source = WorldSource::kVertical;
   Track track = InCamera(truth, rig[1]);
   for (double& time : track.motion.timestamps) time = rig[1].TimeAt(time);
@@ -170,8 +171,16 @@ TEST(RigTrackEvaluation, ATrackOfAnotherViewIsCarriedThere) {
   EXPECT_NEAR(e.Value("root_rotation_err_deg"), 0, 1e-5);
   EXPECT_NEAR(e.Value("tilt_deg"), 0, 1e-5);
 
+  // Too far away by 20 cm for the second camera is aside for the first.
+  Track farther = track;
+  farther.motion.trans.col(2).array() += 0.2;
+  double front = 0;
+  for (int t = 0; t < kFrames; ++t) front += (1300 * 0.2 / VerticesOf(truth, t).col(2).array()).mean() / kFrames;
+  EXPECT_NEAR(Evaluate(farther, truth, rig, "side").Value("other_views_mean_px"), front, kSkinnedPx);
+
   // A vertical of its own that is 3 degrees off.
-  track.world->rotation = track.world->rotation * RotationFromAxisAngle(Vector3d(3 * kDegree, 0, 0));
+  const Vector3d level = track.world->up_in_camera().unitOrthogonal();
+  track.world->rotation = track.world->rotation * RotationFromAxisAngle(3 * kDegree * level);
   EXPECT_NEAR(Evaluate(track, truth, rig, "side").Value("tilt_deg"), 3, 1e-5);
   // An assumed vertical is no truth.
   truth.world->source = WorldSource::kLevelCamera;
