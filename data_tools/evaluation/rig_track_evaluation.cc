@@ -139,10 +139,16 @@ void AddFrame(const MatrixX2d& pixels, const MatrixX2d& true_pixels, ViewErrors*
   errors->frame_percent.push_back(count > 0 ? 100 * mean / (high - low).maxCoeff() : kNotMeasured);
 }
 
-/// In every camera of the rig; both tracks are in the frame of camera `own`.
-std::vector<ViewErrors> MeasureViews(const Track& track, const std::vector<int>& source, const Track& truth,
-                                     const std::vector<RigCamera>& rig, size_t own, const BodyModel& body,
-                                     const VertexErrorOptions& options) {
+/// Errors in every camera of a rig.
+struct RigErrors {
+  std::vector<ViewErrors> views;
+  std::vector<ViewErrors> placed;  ///< of the body in its true size and with its pelvis in its true place
+};
+
+/// Both tracks are in the frame of camera `own`; `scale`: true size / the track's.
+RigErrors MeasureViews(const Track& track, const std::vector<int>& source, const Track& truth,
+                       const std::vector<RigCamera>& rig, size_t own, double scale, const BodyModel& body,
+                       const VertexErrorOptions& options) {
   BODYLOOM_CHECK(options.vertex_step >= 1, "vertex_step ", options.vertex_step, " must be positive");
   SkinnerOptions skinning;
   skinning.num_threads = options.num_threads;
@@ -155,7 +161,7 @@ std::vector<ViewErrors> MeasureViews(const Track& track, const std::vector<int>&
   const auto pose_of = [&](const Motion& motion, int t) {
     return PoseFromAxisAngle(body, motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
   };
-  std::vector<ViewErrors> views(rig.size());
+  RigErrors errors{std::vector<ViewErrors>(rig.size()), std::vector<ViewErrors>(rig.size())};
   const size_t size = 3 * static_cast<size_t>(skinner.num_vertices());
   const int T = truth.num_frames();
   for (int begin = 0; begin < T; begin += kRigFramesHeld) {
@@ -170,13 +176,19 @@ std::vector<ViewErrors> MeasureViews(const Track& track, const std::vector<int>&
     for (size_t i = 0; i < poses.size(); ++i) {
       const Eigen::Map<const MatrixX3d> points(&vertices[size * i], skinner.num_vertices(), 3);
       const Eigen::Map<const MatrixX3d> true_points(&true_vertices[size * i], skinner.num_vertices(), 3);
+      const auto pelvis = [&](const ShapedBody& shape, const BodyPose& pose) -> Eigen::RowVector3d {
+        return shape.rest_joints.row(0) + pose.trans.transpose();
+      };
+      const MatrixX3d placed =
+          (scale * (points.rowwise() - pelvis(shaped, poses[i]))).rowwise() + pelvis(true_shaped, true_poses[i]);
       for (size_t v = 0; v < rig.size(); ++v) {
-        AddFrame(ProjectPoints(rig[v].camera, MovedPoints(from_own[v], points)),
-                 ProjectPoints(rig[v].camera, MovedPoints(from_own[v], true_points)), &views[v]);
+        const MatrixX2d true_pixels = ProjectPoints(rig[v].camera, MovedPoints(from_own[v], true_points));
+        AddFrame(ProjectPoints(rig[v].camera, MovedPoints(from_own[v], points)), true_pixels, &errors.views[v]);
+        AddFrame(ProjectPoints(rig[v].camera, MovedPoints(from_own[v], placed)), true_pixels, &errors.placed[v]);
       }
     }
   }
-  return views;
+  return errors;
 }
 
 void AddViewValues(const std::string& prefix, const ViewErrors& errors, const std::string& where, Evaluation* result) {
@@ -187,14 +199,17 @@ void AddViewValues(const std::string& prefix, const ViewErrors& errors, const st
   result->Add(prefix + "_height_percent", Summarize(errors.frame_percent).mean, "of the person's height there");
 }
 
-void AddViews(const std::vector<ViewErrors>& views, const std::vector<RigCamera>& rig, size_t own, Evaluation* result) {
-  AddViewValues("own_view", views[own], "the track's view by the rig's camera", result);
-  ViewErrors others;
+void AddViews(const RigErrors& errors, const std::vector<RigCamera>& rig, size_t own, Evaluation* result) {
+  AddViewValues("own_view", errors.views[own], "the track's view by the rig's camera", result);
+  ViewErrors others, placed;
   EvaluationBreakdown mean{"view_mean_px", {}, {}}, median{"view_median_px", {}, {}}, p95{"view_p95_px", {}, {}},
       height{"view_height_percent", {}, {}};
   for (size_t v = 0; v < rig.size(); ++v) {
-    if (v != own) others.Add(views[v]);
-    const ErrorStatistics px = Summarize(views[v].frame_px);
+    if (v != own) {
+      others.Add(errors.views[v]);
+      placed.Add(errors.placed[v]);
+    }
+    const ErrorStatistics px = Summarize(errors.views[v].frame_px);
     const auto add = [&](EvaluationBreakdown* breakdown, double value) {
       breakdown->labels.push_back(rig[v].name);
       breakdown->values.push_back(value);
@@ -202,9 +217,10 @@ void AddViews(const std::vector<ViewErrors>& views, const std::vector<RigCamera>
     add(&mean, px.mean);
     add(&median, px.median);
     add(&p95, px.p95);
-    add(&height, Summarize(views[v].frame_percent).mean);
+    add(&height, Summarize(errors.views[v].frame_percent).mean);
   }
   AddViewValues("other_views", others, "the other cameras", result);
+  AddViewValues("other_views_placed", placed, "the other cameras after one scale and pelvis onto pelvis", result);
   for (EvaluationBreakdown* breakdown : {&mean, &median, &p95, &height}) {
     result->breakdowns.push_back(std::move(*breakdown));
   }
@@ -248,9 +264,13 @@ void AddRoom(Track track, const Track& truth, const std::vector<int>& source,
   result->Add("root_drift_percent", 100 * drift.root_drift, "pelvis error after the latter / the way it went");
   const bool has_coco = std::all_of(CocoNames().begin(), CocoNames().end(),
                                     [&](const std::string& name) { return body.FindLandmark(name) >= 0; });
-  if (!up_in_view || !has_coco) return;
+  if (!has_coco) return;
   track.coco17 = CocoLandmarksOf(track.motion, body);
-  AddRoomErrors(track, CocoLandmarksOf(truth.motion, body), *up_in_view, truth.motion.timestamps, result);
+  const std::vector<MatrixX3d> true_landmarks = CocoLandmarksOf(truth.motion, body);
+  for (size_t t = 0; t < source.size(); ++t) scored[t] = track.coco17[size_t(source[t])];
+  result->Add("landmark_pa_mpjpe_mm", ProcrustesPositionError(scored, true_landmarks).mean * kMmPerMetre,
+              "error of COCO's landmarks after one similarity a frame, the pa_mpjpe_mm of recordings");
+  if (up_in_view) AddRoomErrors(track, true_landmarks, *up_in_view, truth.motion.timestamps, result);
 }
 
 struct JointGroup {
@@ -405,7 +425,8 @@ Evaluation EvaluateAgainstRig(const Track& track, const Track& truth, const std:
   AddTruthSigmas(truth, rig[own], &result);
   const std::vector<int> source = NearestFramesWithResult(HasResults(compared, compared.num_frames()));
   if (source.empty()) return result;
-  AddViews(MeasureViews(compared, source, compared_truth, rig, own, body, options.vertices), rig, own, &result);
+  const double scale = result.Value("clip_scale");
+  AddViews(MeasureViews(compared, source, compared_truth, rig, own, scale, body, options.vertices), rig, own, &result);
   std::optional<Eigen::Vector3d> up;
   if (truth.world && truth.world->source != WorldSource::kLevelCamera) {
     up = own_from_rig.camera_from_world_rotation * truth.world->up_in_camera();

@@ -40,11 +40,15 @@ Track TrackAtTimes(const BodyModel& body, const Track& track, const std::vector<
 ///                              mean / longer side of the box around the true vertices' pixels)
 ///   other_views_…              the same in the rig's other cameras, which see the errors in depth; frames of all of
 ///                              them in one
+///   other_views_placed_…       the same of s (x − pelvis X) + pelvis G, s: clip_scale. Errors in size and place, which
+///                              the truth shares if its cameras' poses were not known, are left out
 ///   view_…_px, view_height_percent (breakdowns)   the same by camera
 ///   joint_err_mm               ‖X − G‖ of the joints, nothing aligned
 ///   w_mpjpe_mm, wa_mpjpe_mm, root_drift_percent   world_drift.h: after one rigid motion, by the first second or all
-///   room_…, tilt_deg, …        room_errors.h, against the vertical that the truth states; not where that was assumed,
-///                              or where the track states no world or the body lacks COCO's landmarks
+///   landmark_pa_mpjpe_mm       COCO's landmarks after one similarity a frame, as held_out_views.h has pa_mpjpe_mm; not
+///                              where the body lacks them
+///   room_…, tilt_deg, …        room_errors.h on them, against the vertical that the truth states; not where that was
+///                              assumed, or where the track states no world
 ///   limb_angle_err_deg         hips, knees, shoulders and elbows; joint_angle_group_err_deg (breakdown): by pairs of
 ///                              joints, spine, neck and head
 ///   truth_joint_sigma_mm       median of the truth's joint_sigma: one axis, about the mid-hip

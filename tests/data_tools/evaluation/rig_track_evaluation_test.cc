@@ -108,9 +108,10 @@ TEST(RigTrackEvaluation, TheTruthHasNoError) {
   EXPECT_EQ(e.protocol, "rig-track");
   EXPECT_EQ(e.frames, kFrames);
   EXPECT_EQ(e.Value("frames_without_truth"), 0);
-  for (const char* name : {"projection_mean_px", "pve_mm", "joint_angle_err_deg", "limb_angle_err_deg",
-                           "own_view_mean_px", "own_view_median_px", "own_view_p95_px", "own_view_height_percent",
-                           "other_views_mean_px", "other_views_height_percent", "joint_err_mm"}) {
+  for (const char* name :
+       {"projection_mean_px", "pve_mm", "joint_angle_err_deg", "limb_angle_err_deg", "own_view_mean_px",
+        "own_view_median_px", "own_view_p95_px", "own_view_height_percent", "other_views_mean_px",
+        "other_views_height_percent", "joint_err_mm", "landmark_pa_mpjpe_mm"}) {
     EXPECT_NEAR(e.Value(name), 0, 1e-6) << name;
   }
   for (const char* name : {"w_mpjpe_mm", "wa_mpjpe_mm", "room_g_mpjpe_mm", "room_w_mpjpe_mm", "room_wa_mpjpe_mm"}) {
@@ -150,6 +151,8 @@ TEST(RigTrackEvaluation, AnErrorInDepthShowsInTheOtherView) {
   EXPECT_NEAR(e.Value("joint_err_mm"), 1000 * kDepth, 1e-6);
   EXPECT_NEAR(e.Value("root_depth_err_mm"), 1000 * kDepth, 1e-6);
   EXPECT_NEAR(e.Value("wa_mpjpe_mm"), 0, 1e-6);
+  EXPECT_NEAR(e.Value("landmark_pa_mpjpe_mm"), 0, 1e-6);
+  EXPECT_NEAR(e.Value("other_views_placed_mean_px"), 0, kSkinnedPx);
 }
 
 /// The track of the second camera, in its frame and with its clock, which starts elsewhere and runs too fast.
@@ -206,6 +209,7 @@ TEST(RigTrackEvaluation, AClockThatIsHalfAFrameOff) {
   const Evaluation off = Evaluate(track, truth, rig, "side");
   EXPECT_EQ(off.Value("frames_without_truth"), 0);
   EXPECT_NEAR(off.Value("root_err_mm"), 1000 * kSpeed * 0.5 / kFps, 1e-5);
+  EXPECT_GT(off.Value("landmark_pa_mpjpe_mm"), 1e-3);
   EXPECT_NEAR(OfView(off, "joint_angle_err_deg", "l_elbow"), 0.3 * 0.5 / kFps / kDegree, 1e-5);
   EXPECT_NEAR(OfView(off, "joint_angle_group_err_deg", "elbows"), 0.5 * 0.3 * 0.5 / kFps / kDegree, 1e-5);
 }
