@@ -20,12 +20,16 @@ constexpr const char* kEvaluateFooter =
     "  an AIST++ folder (keypoints2d/, keypoints3d/)    aist-held-out: 3D joints, and the cameras that were not "
     "fitted\n"
     "  a Pose2Sim folder (calib_refined.json)           pose2sim-held-out: the other camera\n"
+    "With --rig the truth is the track of several cameras (bodyloom track --view c01,c03), whose rig.json this is, "
+    "and\n"
+    "the track was fitted to one of them (rig-track).\n"
     "Without a truth, two calibrated cameras that ran together are enough: joints triangulated from their detections\n"
     "(--seen) stand in for it, and the camera that was not fitted judges (rig-held-out). With neither the track is\n"
     "measured alone: how bent the knees are (track-alone).\n"
     "Examples:\n"
     "  bodyloom evaluate --track track.npz --truth clip/truth.npz --json errors.json\n"
     "  bodyloom evaluate --track track.npz --truth aistpp --cameras aistpp/cameras --sequence SEQ --view c01\n"
+    "  bodyloom evaluate --track alone.npz --truth track.npz --rig rig.json --view c03\n"
     "  bodyloom evaluate --track one/person_1.npz --cameras rig.json --view cam1 --seen cam1:1=one/detections.npz\n"
     "    --seen cam2:0=two/detections.npz\n\n";
 
@@ -50,7 +54,10 @@ void AddEvaluateVerb(CLI::App& app, Action* action) {
   verb->add_option("--cameras", c.cameras, "AIST++: camera folder (default: TRUTH/cameras); --seen: the calibration")
       ->type_name("PATH");
   verb->add_option("--sequence", c.sequence, "AIST++: name of the clip")->type_name("NAME");
-  verb->add_option("--view", c.view, "camera that the track was fitted to (default: c01, cam_01)")->type_name("NAME");
+  verb->add_option("--rig", c.rig, "cameras of a true track of several views (rig.json)")->type_name("FILE");
+  verb->add_flag("--equal-clocks", c.equal_clocks, "cameras of --rig without a known clock ran on the first one's");
+  verb->add_option("--view", c.view, "camera that the track was fitted to (default: c01, cam_01; of a rig its first)")
+      ->type_name("NAME");
   verb->callback([request, action] {
     *action = [request] { std::cout << EvaluationTable(EvaluateTrack(*request, CommandCallbacks())); };
   });

@@ -24,6 +24,9 @@ constexpr const char* kEvaluateDoc = R"(A track against what is known: errors by
 truth     a Track, a track or part labels (.npz), an AIST++ folder or a Pose2Sim folder; None: the track alone
 body      Body that both were made with, or a file; None: the track's own
 cameras   AIST++: camera folder; sequence: name of the clip; view: the camera that the track was fitted to
+rig       RigCameras or a rig.json of a truth that is the track of several cameras (track_views()); `view`: the one
+          that this track was fitted to ("": the first); equal_clocks: cameras whose clock is not known ran on the
+          first one's
 
 With or without a truth, a track that states a world is measured in it: "hover_percent", "ground_penetration_p95_mm",
 "balance_outside_percent", "lean_median_deg", ... (docs/evaluation.md).
@@ -79,7 +82,8 @@ double ValueOf(const Evaluation& evaluation, const std::string& name) {
 
 Evaluation EvaluateFromPython(const TrackArgument& track_argument, const std::optional<TrackArgument>& truth,
                               const std::optional<BodyArgument>& body, const std::optional<Path>& cameras,
-                              const std::string& sequence, const std::string& view, const py::object& progress) {
+                              const std::string& sequence, const std::string& view,
+                              const std::optional<RigArgument>& rig, bool equal_clocks, const py::object& progress) {
   const std::shared_ptr<TrackObject> track = TrackFrom(track_argument);
   const std::shared_ptr<const BodyModel> body_model = BodyOf(*track, body);
   EvaluateTrackRequest request;
@@ -87,16 +91,23 @@ Evaluation EvaluateFromPython(const TrackArgument& track_argument, const std::op
   request.cameras = TextOf(cameras);
   request.sequence = sequence;
   request.view = view;
+  request.equal_clocks = equal_clocks;
+  EvaluationInMemory given;
+  if (rig) {
+    given.rig = std::get_if<std::vector<RigCamera>>(&*rig);
+    if (given.rig == nullptr) request.rig = std::get<Path>(*rig).string();
+  }
   std::shared_ptr<TrackObject> true_track;
   if (truth) {
-    if (const auto* given = std::get_if<std::shared_ptr<TrackObject>>(&*truth)) {
-      true_track = *given;
+    if (const auto* in_memory = std::get_if<std::shared_ptr<TrackObject>>(&*truth)) {
+      true_track = *in_memory;
+      given.truth = &true_track->track;
     } else {
       request.truth = std::get<Path>(*truth).string();
     }
   }
   return PythonCallbacks(progress).Run([&](const PipelineCallbacks& callbacks) {
-    return EvaluateTrack(request, *body_model, track->track, true_track ? &true_track->track : nullptr, callbacks);
+    return EvaluateTrack(request, *body_model, track->track, given, callbacks);
   });
 }
 
@@ -149,7 +160,8 @@ void BindResults(py::module_& module) {
   const ExportTrackRequest defaults;
   module.def("evaluate", &EvaluateFromPython, py::arg("track"), py::arg("truth") = py::none(), py::kw_only(),
              py::arg("body") = py::none(), py::arg("cameras") = py::none(), py::arg("sequence") = "",
-             py::arg("view") = "", py::arg("progress") = py::none(), kEvaluateDoc);
+             py::arg("view") = "", py::arg("rig") = py::none(), py::arg("equal_clocks") = false,
+             py::arg("progress") = py::none(), kEvaluateDoc);
   module.def("export", &ExportFromPython, py::arg("tracks"), py::arg("out"), py::arg("form"), py::kw_only(),
              py::arg("body") = py::none(), py::arg("world_axes") = false, py::arg("frame") = py::none(),
              py::arg("rig") = BvhRigNames()[size_t(defaults.rig)], py::arg("textures") = std::vector<Path>(),

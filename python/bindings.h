@@ -15,6 +15,7 @@ void BindCamera(pybind11::module_& module);
 void BindBody(pybind11::module_& module);
 void BindTrack(pybind11::module_& module);
 void BindTracking(pybind11::module_& module);
+void BindViews(pybind11::module_& module);
 void BindPeople(pybind11::module_& module);
 void BindLive(pybind11::module_& module);
 void BindDescriptors(pybind11::module_& module);

@@ -16,6 +16,7 @@ PYBIND11_MODULE(_bodyloom, module) {
   BindBody(module);
   BindTrack(module);
   BindTracking(module);
+  BindViews(module);
   BindPeople(module);
   BindLive(module);
   BindDescriptors(module);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/body/body_model.h"
+#include "geometry/scene/rig.h"
 #include "geometry/scene/track.h"
 #include "tracking/problem/track_summary.h"
 
@@ -31,6 +32,7 @@ struct TrackObject {
 using Path = std::filesystem::path;
 using BodyArgument = std::variant<std::shared_ptr<BodyModel>, Path>;
 using TrackArgument = std::variant<std::shared_ptr<TrackObject>, Path>;
+using RigArgument = std::variant<std::vector<RigCamera>, Path>;
 
 /// The argument's body, else the built-in one.
 std::shared_ptr<const BodyModel> BodyFrom(const std::optional<BodyArgument>& argument);

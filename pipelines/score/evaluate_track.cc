@@ -13,6 +13,7 @@
 #include "data_tools/evaluation/aist_evaluation.h"
 #include "data_tools/evaluation/evaluation.h"
 #include "data_tools/evaluation/part_label_evaluation.h"
+#include "data_tools/evaluation/rig_track_evaluation.h"
 #include "data_tools/evaluation/room_physics.h"
 #include "data_tools/evaluation/self_penetration.h"
 #include "data_tools/evaluation/triangulated_clip.h"
@@ -22,6 +23,7 @@
 #include "data_tools/formats/npz.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/observations/part_labels.h"
+#include "data_tools/observations/rig_io.h"
 #include "geometry/base/parallel.h"
 #include "geometry/scene/camera_path.h"
 #include "pipelines/files.h"
@@ -36,6 +38,30 @@ Evaluation EvaluateAgainstTrack(const Track& track, const Track& truth, const Bo
     AddWorldDrift(MeasureWorldDrift(track, truth, body), &evaluation);
   }
   return evaluation;
+}
+
+bool HasRig(const EvaluateTrackRequest& request, const EvaluationInMemory& given) {
+  return !request.rig.empty() || given.rig != nullptr;
+}
+
+/// Against a track of several cameras. The true motion goes to `true_motion`.
+Evaluation EvaluateAgainstRigTrack(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
+                                   const EvaluationInMemory& given, std::optional<Motion>* true_motion) {
+  std::optional<Track> read;
+  if (given.truth == nullptr) read = ReadTrack(request.truth, MovingCamera::kTake);
+  const Track& truth = read ? *read : *given.truth;
+  RequireTrackFitsBody(track, body, request.track);
+  RequireTrackFitsBody(truth, body, read ? request.truth : "truth");
+  RigTrackOptions options;
+  options.equal_clocks = request.equal_clocks;
+  options.vertices.num_threads = ThreadsFor(0);
+  *true_motion = truth.motion;
+  const std::vector<RigCamera> rig = given.rig != nullptr ? *given.rig : ReadRig(request.rig);
+  try {
+    return EvaluateAgainstRig(track, truth, rig, request.view, body, options);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(request.track + ": " + error.what());
+  }
 }
 
 /// Against a file: what kind of truth it is shows in what it holds. A true motion goes to `true_motion`.
@@ -103,29 +129,46 @@ void AddSurfaceMeasures(const Track& track, const std::optional<Motion>& true_mo
   if (true_motion) add(*true_motion, "gt_");
 }
 
-/// Checks the request and its files, except the track and the body. `truth`: given in memory.
-void CheckEvaluation(const EvaluateTrackRequest& request, const Track* truth) {
-  if ((!request.truth.empty() || truth != nullptr) && !request.seen.empty()) {
+/// Checks what goes with a rig.
+void CheckEvaluationRig(const EvaluateTrackRequest& request, const EvaluationInMemory& given) {
+  if (!HasRig(request, given)) {
+    if (request.equal_clocks) throw RequestError("--equal-clocks is of the cameras of --rig, which is not given");
+    return;
+  }
+  if (given.truth == nullptr && (request.truth.empty() || std::filesystem::is_directory(request.truth))) {
+    throw RequestError("--rig has the cameras of a true track: give the track of all of them, --truth FILE.npz");
+  }
+  if (!request.cameras.empty() || !request.sequence.empty()) {
+    throw RequestError("--rig has the cameras: leave out --cameras and --sequence");
+  }
+}
+
+/// Checks the request and its files, except the track and the body.
+void CheckEvaluation(const EvaluateTrackRequest& request, const EvaluationInMemory& given) {
+  if ((!request.truth.empty() || given.truth != nullptr || HasRig(request, given)) && !request.seen.empty()) {
     throw RequestError(
         "what is the track compared with? expected --truth, or --seen of two cameras and more, not both");
   }
   if (!request.seen.empty() && (request.cameras.empty() || request.view.empty())) {
     throw RequestError("--seen needs the calibration, --cameras, and the camera that was fitted, --view");
   }
+  CheckEvaluationRig(request, given);
   for (const RigDetections& one : request.seen) RequireReadable(one.detections, "detections");
   RequireReadable(request.truth, "truth");
-  RequireDistinct({request.truth}, {request.json});
+  RequireReadable(request.rig, "rig");
+  RequireDistinct({request.truth, request.rig}, {request.json});
   RequireWritable(request.json);
 }
 
 /// Of a request that CheckEvaluation() has passed.
 Evaluation EvaluateChecked(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
-                           const Track* truth, const PipelineCallbacks& callbacks) {
+                           const EvaluationInMemory& given, const PipelineCallbacks& callbacks) {
   callbacks.Update("measure", 0);
   std::optional<Motion> true_motion;
-  if (truth != nullptr) true_motion = truth->motion;
-  Evaluation evaluation = truth != nullptr ? EvaluateAgainstTrack(track, *truth, body)
-                                           : EvaluateAgainstFiles(request, track, body, &true_motion);
+  if (given.truth != nullptr) true_motion = given.truth->motion;
+  Evaluation evaluation = HasRig(request, given)   ? EvaluateAgainstRigTrack(request, track, body, given, &true_motion)
+                          : given.truth != nullptr ? EvaluateAgainstTrack(track, *given.truth, body)
+                                                   : EvaluateAgainstFiles(request, track, body, &true_motion);
   AddSurfaceMeasures(track, true_motion, body, callbacks, &evaluation);
   if (!request.json.empty()) {
     WriteFileAtomically(request.json, EvaluationJson(evaluation));
@@ -138,16 +181,16 @@ Evaluation EvaluateChecked(const EvaluateTrackRequest& request, const BodyModel&
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
   RequireReadable(request.track, "track");
   RequireReadable(request.body, "body model");
-  CheckEvaluation(request, nullptr);
+  CheckEvaluation(request, {});
   RequireDistinct({request.track, request.body}, {request.json});
-  return EvaluateChecked(request, *BodyOrBuiltin(request.body), ReadTrack(request.track, MovingCamera::kTake), nullptr,
+  return EvaluateChecked(request, *BodyOrBuiltin(request.body), ReadTrack(request.track, MovingCamera::kTake), {},
                          callbacks);
 }
 
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
-                         const Track* truth, const PipelineCallbacks& callbacks) {
-  CheckEvaluation(request, truth);
-  return EvaluateChecked(request, body, track, truth, callbacks);
+                         const EvaluationInMemory& given, const PipelineCallbacks& callbacks) {
+  CheckEvaluation(request, given);
+  return EvaluateChecked(request, body, track, given, callbacks);
 }
 
 }  // namespace bodyloom

@@ -8,6 +8,7 @@
 #include "data_tools/evaluation/evaluation.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/body/body_model.h"
+#include "geometry/scene/rig.h"
 #include "geometry/scene/track.h"
 #include "pipelines/score/rig_clip.h"
 
@@ -21,21 +22,31 @@ struct EvaluateTrackRequest {
   /// Instead of `truth`: detections of the person by two or more calibrated cameras of a rig; `cameras` is the
   /// calibration, `view` the camera that the track was fitted to (rig_clip.h).
   std::vector<RigDetections> seen;
-  std::string body;      ///< body of track and truth; empty: the built-in one
-  std::string cameras;   ///< AIST++: camera folder; empty: truth/cameras
-  std::string sequence;  ///< AIST++: name of the clip
-  std::string view;      ///< camera that the track was fitted to; empty: c01 (AIST++), cam_01 (Pose2Sim)
-  std::string json;      ///< EvaluationJson; empty: not written
+  /// The cameras of a `truth` that was tracked in several views (data_tools/observations/rig_io.h): the track is of one
+  /// of them, `view` (data_tools/evaluation/rig_track_evaluation.h).
+  std::string rig;
+  bool equal_clocks = false;  ///< cameras of `rig` whose clocks are not known have the first one's
+  std::string body;           ///< body of track and truth; empty: the built-in one
+  std::string cameras;        ///< AIST++: camera folder; empty: truth/cameras
+  std::string sequence;       ///< AIST++: name of the clip
+  /// Camera that the track was fitted to; empty: c01 (AIST++), cam_01 (Pose2Sim), the first one (`rig`).
+  std::string view;
+  std::string json;  ///< EvaluationJson; empty: not written
 };
 
-/// Evaluates the track and writes the requested files. Throws RequestError when an AIST++ clip is not named or both
-/// `truth` and `seen` are given, std::runtime_error naming a file that cannot be used, Cancelled before the evaluation
-/// starts.
+/// Evaluates the track and writes the requested files. Throws RequestError when an AIST++ clip is not named or fields
+/// do not go together (`truth` and `seen`, `rig` without a true track), std::runtime_error naming a file that cannot be
+/// used, Cancelled before the evaluation starts.
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks = {});
 
-/// The same for a track in memory, its body, and optionally a true track of this body; the corresponding files of the
-/// request are not read.
+/// Data for EvaluateTrack() that are in memory; null: not given.
+struct EvaluationInMemory {
+  const Track* truth = nullptr;                 ///< of the track's body
+  const std::vector<RigCamera>* rig = nullptr;  ///< its cameras
+};
+
+/// The same for a track in memory and its body; files of the request that are given in memory are not read.
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,
-                         const Track* truth, const PipelineCallbacks& callbacks = {});
+                         const EvaluationInMemory& given, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -23,6 +23,7 @@ from ._bodyloom import (
     LiveTracker,
     Person,
     Renderer,
+    RigCamera,
     ShownAvatar,
     Track,
     TrackSummary,
@@ -32,10 +33,13 @@ from ._bodyloom import (
     evaluate,
     export,
     parse_photo,
+    read_rig,
     render,
     run,
     synthetic_clip,
     track,
+    track_views,
+    write_rig,
 )
 
 __all__ = [
@@ -52,6 +56,7 @@ __all__ = [
     "LiveTracker",
     "Person",
     "Renderer",
+    "RigCamera",
     "ShownAvatar",
     "Track",
     "TrackSummary",
@@ -61,10 +66,13 @@ __all__ = [
     "evaluate",
     "export",
     "parse_photo",
+    "read_rig",
     "render",
     "run",
     "synthetic_clip",
     "track",
+    "track_views",
+    "write_rig",
 ]
 
 for _name in __all__:

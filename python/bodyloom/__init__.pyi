@@ -22,6 +22,7 @@ __all__ = [
     "LiveTracker",
     "Person",
     "Renderer",
+    "RigCamera",
     "ShownAvatar",
     "Track",
     "TrackSummary",
@@ -31,10 +32,13 @@ __all__ = [
     "evaluate",
     "export",
     "parse_photo",
+    "read_rig",
     "render",
     "run",
     "synthetic_clip",
     "track",
+    "track_views",
+    "write_rig",
 ]
 
 _Path = str | os.PathLike[str]
@@ -114,6 +118,47 @@ class Camera:
     def distortion(self) -> _Doubles: ...
     @property
     def weak(self) -> tuple[float, float, float]: ...
+
+class RigCamera:
+    def __init__(
+        self,
+        name: str,
+        camera: Camera,
+        camera_from_rig: ArrayLike | None = None,
+        *,
+        offset_s: float = 0.0,
+        rate: float = 0.0,
+        middle_s: float = 0.0,
+        rotation_sigma_rad: float = 0.0,
+        translation_sigma_m: float = 0.0,
+        focal_log_sigma: float = 0.0,
+        offset_sigma_s: float = 0.0,
+        rate_sigma: float = 0.0,
+    ) -> None: ...
+    def time_at(self, first_s: float) -> float: ...
+    def first_time_at(self, own_s: float) -> float: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def camera(self) -> Camera: ...
+    @property
+    def camera_from_rig(self) -> _Doubles: ...
+    @property
+    def offset_s(self) -> float: ...
+    @property
+    def rate(self) -> float: ...
+    @property
+    def middle_s(self) -> float: ...
+    @property
+    def rotation_sigma_rad(self) -> float: ...
+    @property
+    def translation_sigma_m(self) -> float: ...
+    @property
+    def focal_log_sigma(self) -> float: ...
+    @property
+    def offset_sigma_s(self) -> float: ...
+    @property
+    def rate_sigma(self) -> float: ...
 
 class Body:
     @staticmethod
@@ -504,6 +549,32 @@ def track(
     end_s: float | None = None,
     progress: _Progress | None = None,
 ) -> Track: ...
+def track_views(
+    keypoints: Sequence[Keypoints | _Path] | _Path,
+    *,
+    views: Sequence[str] = [],
+    cameras: Sequence[RigCamera] | _Path | None = None,
+    known: Literal["intrinsics", "poses", "clocks"] = "clocks",
+    image_size: tuple[int, int] | None = None,
+    fps: float | None = None,
+    focal_px: float | None = None,
+    focal_35mm: float | None = None,
+    min_confidence: float = 0.0,
+    convention: str = "",
+    body: _Path | None = None,
+    stature_m: float | None = None,
+    prior: _Path | None = None,
+    lifter: _Path | None = None,
+    solver: Literal["chain+ceres", "chain", "ceres"] = "chain+ceres",
+    threads: int = 0,
+    max_iterations: int = 50,
+    estimate_shape: bool = True,
+    uncertainty: bool = True,
+    ground: bool = True,
+    progress: _Progress | None = None,
+) -> tuple[Track, list[RigCamera]]: ...
+def read_rig(path: _Path) -> list[RigCamera]: ...
+def write_rig(path: _Path, rig: Sequence[RigCamera]) -> None: ...
 def run(
     video: _Path | Sequence[_Path],
     *,
@@ -656,6 +727,8 @@ def evaluate(
     cameras: _Path | None = None,
     sequence: str = "",
     view: str = "",
+    rig: Sequence[RigCamera] | _Path | None = None,
+    equal_clocks: bool = False,
     progress: _Progress | None = None,
 ) -> Evaluation: ...
 def export(

@@ -76,6 +76,22 @@ TEST_F(TrackViewsVerb, TwoFilesGiveATrackAndARig) {
   EXPECT_THAT(again.out, HasSubstr("60 frames, its camera and clock are known"));
 }
 
+TEST_F(TrackViewsVerb, TheirTrackJudgesTheTrackOfOneView) {
+  Well(Track({"--threads", "2", "--quiet"}));
+  Well({"track", "--detections", Seen("70"), "--threads", "2", "--out", folder_ / "one.npz", "--quiet"});
+  const CommandResult run = Well({"evaluate", "--track", folder_ / "one.npz", "--truth", folder_ / "track.npz", "--rig",
+                                  folder_ / "rig.json", "--view", "view2"});
+  EXPECT_THAT(run.out, HasSubstr("protocol rig-track"));
+  EXPECT_THAT(run.out, HasSubstr("  view: view2\n"));
+  EXPECT_THAT(run.out, HasSubstr("  truth_joint_sigma_mm "));
+  EXPECT_THAT(run.out, HasSubstr("  view_mean_px:\n    view1 "));
+  const CommandResult unknown = RunCommand({"evaluate", "--track", folder_ / "one.npz", "--truth",
+                                            folder_ / "track.npz", "--rig", folder_ / "rig.json", "--view", "c05"});
+  EXPECT_EQ(unknown.exit_code, kExitFailed);
+  EXPECT_EQ(unknown.NumErrorLines(), 1) << unknown.err;
+  EXPECT_THAT(unknown.err, HasSubstr("no camera 'c05', expected one of view1, view2"));
+}
+
 TEST_F(TrackViewsVerb, ThePlanWritesNothing) {
   const CommandResult plan = Well(Track({"--plan"}));
   EXPECT_THAT(plan.out, HasSubstr("shared by 2 views"));

@@ -5,8 +5,8 @@
 /// both cameras and clocks; under it every other pair has an agreement, too: the distance of the points about their
 /// centre and that of the centres. The hypothesis is taken under which the people agree best in sum when each is
 /// matched with at most one, greedily; a pair counts by its overlap and by how much nearer it is than poses that have
-/// nothing to do with each other (d₀ of align_motions.h), so that whoever hardly moves is little evidence. Two people who
-/// dance the same steps are told by where they stand.
+/// nothing to do with each other (d₀ of align_motions.h), so that whoever hardly moves is little evidence. Two people
+/// who dance the same steps are told by where they stand.
 #pragma once
 
 #include <vector>

@@ -2,8 +2,8 @@
 /// Follows all people of a scene through several cameras at once, of which nothing need be known.
 ///
 /// Everybody is first fitted alone in every view, and people are matched by their motions (match_people.h). The person
-/// whose motion is the best evidence, the leader, tells cameras and clocks (track_views.h), with which everybody else is
-/// fitted. The verticals and grounds of these fits are joined (room/shared_scene.h), and several people are fitted
+/// whose motion is the best evidence, the leader, tells cameras and clocks (track_views.h), with which everybody else
+/// is fitted. The verticals and grounds of these fits are joined (room/shared_scene.h), and several people are fitted
 /// again with the common one.
 #pragma once
 
