@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <utility>
 
 #include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
 #include "geometry/base/stopwatch.h"
 #include "geometry/body/posed_body.h"
 #include "geometry/math/rotation.h"
@@ -21,12 +23,17 @@ namespace {
 
 using Eigen::Matrix3d;
 
+/// Deviation of an alignment's offset beyond which the motion says nothing about the clocks. The fit would take the
+/// velocities of the detector's errors for the person's.
+constexpr double kUntoldClock_s = 0.3;
+
 /// Options of a fit alone, which only gives a start.
 TrackSequenceOptions Alone(TrackSequenceOptions options, const ObservedView& view) {
   options.camera_knowledge = view.knowledge;
   options.solver = SequenceSolver::kChain;
   options.estimate_uncertainty = false;
   options.ground.contact_weight = options.ground.surface_weight = options.ground.balance_weight = 0;
+  options.max_fine_iterations = 1;
   options.user_terms.clear();
   return options;
 }
@@ -157,6 +164,22 @@ TrackSequenceResult FitViewAlone(const ObservedView& view, const TrackSequenceIn
   return FitClip(InputOfView(view, common), Alone(options, view));
 }
 
+std::vector<TrackSequenceResult> FitViewsAlone(const std::vector<ObservedView>& views, const TrackSequenceInput& common,
+                                               const TrackSequenceOptions& options) {
+  std::vector<TrackSequenceResult> alone(views.size());
+  std::mutex reports;
+  TrackSequenceOptions of_view = options;
+  if (options.progress) {
+    of_view.progress = [&](const TrackProgress& progress) {
+      const std::lock_guard<std::mutex> lock(reports);
+      return options.progress(progress);
+    };
+  }
+  ParallelFor(static_cast<int>(views.size()), ThreadsFor(options.num_threads),
+              [&](int v) { alone[v] = FitViewAlone(views[v], common, of_view); });
+  return alone;
+}
+
 ViewMotion MotionOf(const TrackSequenceResult& alone) {
   constexpr int kFirst = 5, kCount = 12;  // shoulders to ankles
   ViewMotion motion;
@@ -175,8 +198,7 @@ ViewMotion MotionOf(const TrackSequenceResult& alone) {
 TrackViewsResult TrackViews(const std::vector<ObservedView>& views, const TrackSequenceInput& common,
                             const TrackSequenceOptions& options) {
   const Stopwatch watch;
-  std::vector<TrackSequenceResult> alone;
-  for (const ObservedView& view : views) alone.push_back(FitViewAlone(view, common, options));
+  std::vector<TrackSequenceResult> alone = FitViewsAlone(views, common, options);
   const double seconds_alone = watch.seconds();
   TrackViewsResult result = FitViewsTogether(views, std::move(alone), common, options);
   result.summary.seconds_alone = seconds_alone;
@@ -238,6 +260,13 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
   TrackSequenceOptions all = options;
   all.camera_knowledge = views[0].knowledge;
   result.joint = FitClip(input, all);
+  size_t next = 0;
+  for (ViewSummary& view : result.joint.summary.views) {
+    const PlacedView& at = placed[index[next]];
+    if (!others[next++].clock_known && at.offset_sigma_s > kUntoldClock_s) {
+      view.offset_sigma_s = std::max(view.offset_sigma_s, at.offset_sigma_s);
+    }
+  }
   summary.seconds = watch.seconds();
   return result;
 }
