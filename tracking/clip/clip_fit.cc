@@ -375,10 +375,14 @@ void ClipFit::Finish(TrackSequenceResult* result) {
 
 void ClipFit::FillJointSigma(Track* track) {
   // On the coarse frames: neighbours' detection errors are not independent, and their joints' spread changes slowly.
-  const PositionSigma sigma =
-      PositionSigmaOf(SelectFrames(problem_, coarse_frames_), threads_, &summary_.focal_log_sigma);
+  SequenceProblem coarse = SelectFrames(problem_, coarse_frames_);
+  const bool several = !problem_.views.empty();
+  if (several) LeaveGround(&coarse);
+  const PositionSigma sigma = PositionSigmaOf(std::move(coarse), threads_, &summary_.focal_log_sigma);
   SetViewSigma(problem_.layout, sigma.shared, &summary_);
-  if (!problem_.views.empty()) summary_.focal_log_sigma *= kViewSigmaFactor;
+  if (several && problem_.layout.focal_column >= 0) {
+    summary_.focal_log_sigma = std::min(kViewSigmaFactor * summary_.focal_log_sigma, problem_.log_focal_sigma);
+  }
   const auto distance = [&](size_t i, size_t t) {
     return std::abs(problem_.timestamps[coarse_frames_[i]] - problem_.timestamps[t]);
   };
@@ -388,6 +392,7 @@ void ClipFit::FillJointSigma(Track* track) {
     track->joint_sigma.row(t) = sigma.joints.row(i);
     track->root_sigma[t] = sigma.hips[i];
   }
+  if (several) AddFocalSpread(summary_.focal_log_sigma, track);
   if (!settled_focal_) return;
   summary_.focal_log_sigma = settled_focal_->log_sigma;  // the normal equations hold it
   AddFocalSpread(settled_focal_->log_sigma, track);

@@ -13,6 +13,8 @@
 #include "tracking/initialise/view_observations.h"
 #include "tracking/problem/moving_camera.h"
 #include "tracking/problem/track_summary.h"
+#include "tracking/terms/ground_contact/ground_contact.h"
+#include "tracking/terms/surface_contact/surface_contact.h"
 
 namespace bodyloom {
 
@@ -217,11 +219,21 @@ void SetViewSigma(const FrameLayout& layout, const Eigen::VectorXd& shared_sigma
       view.rotation_sigma_rad = kViewSigmaFactor * sigma(columns.pose_column, 3);
       view.translation_sigma_m = kViewSigmaFactor * sigma(columns.pose_column + 3, 3);
     }
-    if (columns.focal_column >= 0) view.focal_log_sigma = kViewSigmaFactor * sigma(columns.focal_column, 1);
-    if (columns.clock_column >= 0) {
-      view.offset_sigma_s = sigma(columns.clock_column, 1);
-      view.rate_sigma = sigma(columns.clock_column + 1, 1);
+    if (columns.focal_column >= 0) {
+      view.focal_log_sigma = std::min(kViewSigmaFactor * sigma(columns.focal_column, 1), columns.log_focal_sigma);
     }
+    if (columns.clock_column >= 0) {
+      const double offset_s = sigma(columns.clock_column, 1), rate = sigma(columns.clock_column + 1, 1);
+      view.offset_sigma_s = std::min(kClockSigmaFactor * offset_s, columns.offset_sigma_s);
+      view.rate_sigma = std::min(kClockSigmaFactor * rate, columns.rate_sigma);
+    }
+  }
+}
+
+void LeaveGround(SequenceProblem* problem) {
+  for (FrameData& frame : problem->frames) {
+    frame.Get<GroundContactTerm>().feet.clear();
+    frame.Get<SurfaceContactTerm>().contacts.clear();
   }
 }
 

@@ -55,10 +55,15 @@ class ClipViews : public ClipTerm {
 
 /// Fills the standard deviations of the summary's views from those of the shared unknowns (PositionSigma::shared;
 /// empty: not known), those of poses and focal lengths times kViewSigmaFactor: a detector's landmarks lie elsewhere on
-/// the body than the model's in all frames alike, which the cost does not know. Clocks do not suffer from that
-/// (docs/lab/two_views.md).
+/// the body than the model's in all frames alike, which the cost does not know. Clocks do not suffer from that, but
+/// from errors that last for several frames, which the cost takes for independent: times kClockSigmaFactor
+/// (docs/lab/two_views.md). Those of focal lengths and clocks are at most those of their priors.
 void SetViewSigma(const FrameLayout& layout, const Eigen::VectorXd& shared_sigma, TrackSequenceSummary* summary);
-inline constexpr double kViewSigmaFactor = 5;
+inline constexpr double kViewSigmaFactor = 5, kClockSigmaFactor = 3.5;
+
+/// Removes what holds the body to the ground. The ground is an estimate of the same fit, which the cost takes for known
+/// and by which it would know the first camera's focal length.
+void LeaveGround(SequenceProblem* problem);
 
 std::vector<PlanEntry> PlanViews(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::unique_ptr<ClipTerm> MakeClipViews(const ClipTermInput& clip);

@@ -3,24 +3,34 @@
 /// the same way.
 #pragma once
 
+#include <mutex>
+#include <numeric>
+#include <vector>
+
 #include "tracking/problem/track_options.h"
 
 namespace bodyloom {
 
-/// Options of fits that report to one callback. Once it requests a stop, every later fit is stopped too.
+/// Options of fits that report to one callback, from one thread at a time. Once it requests a stop, every later fit is
+/// stopped too.
 class FitsProgress {
  public:
   /// `options` must outlive the fits.
   FitsProgress(const TrackSequenceOptions& options, size_t num_fits)
       : options_(options), num_fits_(static_cast<double>(num_fits)) {}
 
-  /// Options of the next fit. They refer to this object.
-  [[nodiscard]] TrackSequenceOptions NextFit() {
-    TrackSequenceOptions options = options_;
-    const int done = begun_++;
-    if (options_.progress) {
-      options.progress = [this, done](TrackProgress at) {
-        at.fraction = (done + at.fraction) / num_fits_;
+  /// Options of the next fit, which begins when all before have ended. They refer to this object.
+  [[nodiscard]] TrackSequenceOptions NextFit() { return NextFits(1)[0]; }
+  /// The same for fits that run at the same time.
+  [[nodiscard]] std::vector<TrackSequenceOptions> NextFits(size_t count) {
+    ended_ += static_cast<double>(running_.size());
+    running_.assign(count, 0);
+    std::vector<TrackSequenceOptions> options(count, options_);
+    for (size_t i = 0; options_.progress && i < count; ++i) {
+      options[i].progress = [this, i](TrackProgress at) {
+        const std::lock_guard<std::mutex> lock(reports_);
+        running_[i] = at.fraction;
+        at.fraction = (ended_ + std::accumulate(running_.begin(), running_.end(), 0.0)) / num_fits_;
         stopped_ = stopped_ || !options_.progress(at);
         return !stopped_;
       };
@@ -31,8 +41,9 @@ class FitsProgress {
 
  private:
   const TrackSequenceOptions& options_;
-  double num_fits_;
-  int begun_ = 0;
+  double num_fits_, ended_ = 0;
+  std::vector<double> running_;  ///< fractions
+  std::mutex reports_;
   bool stopped_ = false;
 };
 

@@ -14,6 +14,12 @@ namespace {
 /// A squared residual so far beyond every kernel that ρ is its saturation to rounding.
 constexpr double kBeyondKernels = 1e15;
 
+/// Columns before those of further views, on which a layout's own terms do not depend.
+int NumOwnColumns(const FrameLayout& layout) {
+  return layout.beta_column + layout.num_betas + (layout.focal_column >= 0 ? 1 : 0) +
+         (layout.clock_column >= 0 ? 2 : 0);
+}
+
 }  // namespace
 
 void FrameAccumulator::Begin(const FrameLayout& layout, const FrameState& state, const VectorXd& betas,
@@ -122,7 +128,7 @@ void FrameAccumulator::Finish(FrameSystem* system) {
     products.c = H_.data();
     products.lda = products.ldb = J_.cols();
     products.ldc = H_.cols();
-    products.rows = products.columns = p;
+    products.rows = products.columns = NumOwnColumns(*layout_);
     products.last = row_;
     products.upper = true;
     panel_internal::AddProducts(products);

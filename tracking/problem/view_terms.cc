@@ -46,19 +46,65 @@ void ViewColumns::TakeRows(const Eigen::Ref<const RowMatrixXd>& in_view, Eigen::
 }
 
 void ViewColumns::AddSums(const FrameSystem& in_view, FrameSystem* system) const {
-  // H M by columns, and then Mᵀ (H M) = ((H M)ᵀ M)ᵀ the same way.
-  thread_local RowMatrixXd H, HM, both;
-  const Eigen::Index local = in_view.gradient.size(), all = layout_.num_columns;
-  H = in_view.H.selfadjointView<Eigen::Lower>();
-  HM.resize(local, all);
-  TakeRows(H, HM);
-  H = HM.transpose();
-  both.resize(all, all);
-  TakeRows(H, both);
-  system->H.triangularView<Eigen::Lower>() += both;
-  RowMatrixXd gradient(1, all);
-  TakeRows(in_view.gradient.transpose(), gradient);
-  system->gradient += gradient.transpose();
+  // M is the identity for the joints, which come first in both. So only H's rows of the root and of the columns after
+  // the joints are needed, and the columns of the layout that the view depends on besides the joints.
+  const FrameLayout& local = *view_.local;
+  const int root = layout_.column_of_joint[0], t = layout_.translation_column, B = layout_.num_betas;
+  thread_local std::vector<int> columns;  // ascending
+  columns.clear();
+  const auto add = [&](int first, int number) {
+    for (int i = 0; first >= 0 && i < number; ++i) columns.push_back(first + i);
+  };
+  add(t, 3);
+  add(layout_.beta_column, B);
+  add(view_.pose_column, 6);
+  add(view_.focal_column, 1);
+  add(view_.clock_column, 2);
+  // Mᵀ of rows in the order root, translation, shape, focal length, clock: rows in the order of `columns`.
+  const auto take = [&](const RowMatrixXd& rows, RowMatrixXd* taken) {
+    const auto turn = rows.topRows<3>(), move = rows.middleRows<3>(3);
+    taken->topRows<3>().noalias() = rotation_.transpose() * move;
+    taken->middleRows(3, B) = rows.middleRows(6, B);
+    taken->middleRows(3, B).noalias() += by_betas_.transpose() * move;
+    Eigen::Index from = 6 + B, to = 3 + B;
+    if (view_.pose_column >= 0) {
+      taken->middleRows<3>(to).noalias() = by_turn_.topRows<3>().transpose() * turn;
+      taken->middleRows<3>(to).noalias() += by_turn_.bottomRows<3>().transpose() * move;
+      taken->middleRows<3>(to + 3) = move;
+      to += 6;
+    }
+    if (local.focal_column >= 0) taken->row(to++) = rows.row(from++);
+    if (view_.clock_column >= 0) {
+      taken->row(to) = rows.row(from);
+      taken->row(to + 1) = clock_s_ * rows.row(from);
+    }
+  };
+  const Eigen::Index n = in_view.gradient.size(), rest = n - t, count = static_cast<Eigen::Index>(columns.size());
+  thread_local RowMatrixXd rows, taken, back, both;
+  rows.resize(3 + rest, n + 1);  // the last column is the gradient
+  const auto copy = [&](Eigen::Index to, Eigen::Index from) {
+    rows.row(to).head(from) = in_view.H.row(from).head(from);
+    rows.row(to).segment(from, n - from) = in_view.H.col(from).tail(n - from).transpose();
+    rows(to, n) = in_view.gradient[from];
+  };
+  for (int i = 0; i < 3; ++i) copy(i, root + i);
+  for (Eigen::Index i = 0; i < rest; ++i) copy(3 + i, t + i);
+  taken.resize(count, n + 1);
+  take(rows, &taken);
+  back.resize(3 + rest, count);
+  back.topRows<3>() = taken.middleCols<3>(root).transpose();
+  back.bottomRows(rest) = taken.middleCols(t, rest).transpose();
+  both.resize(count, count);
+  take(back, &both);
+  for (int j = 0; j < t; ++j) {
+    system->H.col(j).segment(j, t - j) += in_view.H.col(j).segment(j, t - j);
+    for (Eigen::Index i = 0; i < count; ++i) system->H(columns[i], j) += taken(i, j);
+  }
+  system->gradient.head(t) += in_view.gradient.head(t);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    system->gradient[columns[i]] += taken(i, n);
+    for (Eigen::Index j = 0; j <= i; ++j) system->H(columns[i], columns[j]) += both(i, j);
+  }
 }
 
 std::vector<int> ViewColumns::Blocks(const std::vector<int>& in_view) const {

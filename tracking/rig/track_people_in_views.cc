@@ -30,37 +30,42 @@ class PeopleInViews {
  public:
   PeopleInViews(const std::vector<ObservedScene>& scenes, const TrackSequenceInput& common, FitsProgress* fits)
       : common_(common), fits_(fits), keypoints_(scenes.size()), alone_(scenes.size()) {
+    std::vector<ObservedView> all;
     for (size_t v = 0; v < scenes.size(); ++v) {
       cameras_.push_back(scenes[v].camera);
       for (const KeypointSequence* person : scenes[v].people) {
-        if (fits->stopped()) return;
         keypoints_[v].push_back(*person);
-        ObservedView view = scenes[v].camera;
-        view.keypoints = person;
-        alone_[v].push_back(FitViewAlone(view, common, fits->NextFit()));
+        all.push_back(scenes[v].camera);
+        all.back().keypoints = person;
       }
+    }
+    std::vector<TrackSequenceResult> fits_alone = FitViewsAlone(all, common, fits->NextFits(all.size()));
+    auto next = fits_alone.begin();
+    for (size_t v = 0; v < scenes.size(); ++v) {
+      for (size_t i = 0; i < scenes[v].people.size(); ++i) alone_[v].push_back(std::move(*next++));
     }
   }
 
   /// People of a view matched with those of the first.
   [[nodiscard]] MatchedViews MatchWithFirst(size_t v) const {
     const std::vector<ViewMotion> first = MotionsOf(0), other = MotionsOf(v);
-    if (!cameras_[v].camera_from_rig || !cameras_[v].offset_s) return MatchPeople(first, other);
-    MotionAlignment known;
-    known.b_from_a = Compose(*cameras_[v].camera_from_rig, Inverse(*cameras_[0].camera_from_rig));
-    known.offset_s = *cameras_[v].offset_s;
-    return MatchPeople(first, other, known);
+    return IsKnown(v) ? MatchPeople(first, other, KnownAlignment(v)) : MatchPeople(first, other);
   }
 
   /// Evidence for cameras and clocks in the motion of a person whom several views show, in sum over the views
-  /// (MotionAlignment::score): somebody who hardly moves agrees with everything.
+  /// (MotionAlignment::score): somebody who hardly moves agrees with everything. Of known views the time in common.
   [[nodiscard]] double EvidenceOf(const std::vector<int>& person_in_view) const {
     double score = 0;
     const ViewMotion first = MotionOf(alone_[0][person_in_view[0]]);
     for (size_t v = 1; v < person_in_view.size(); ++v) {
       if (person_in_view[v] < 0) continue;
-      const MotionAlignment alignment = AlignMotions(first, MotionOf(alone_[v][person_in_view[v]]));
-      if (alignment.found) score += alignment.score;
+      const ViewMotion other = MotionOf(alone_[v][person_in_view[v]]);
+      if (IsKnown(v)) {
+        const MotionAlignment known = KnownAlignment(v);
+        score += AgreementOf(first, other, known.b_from_a, known.offset_s).overlap_s;
+      } else if (const MotionAlignment alignment = AlignMotions(first, other); alignment.found) {
+        score += alignment.score;
+      }
     }
     return score;
   }
@@ -119,6 +124,13 @@ class PeopleInViews {
   }
 
  private:
+  [[nodiscard]] bool IsKnown(size_t v) const { return cameras_[v].camera_from_rig && cameras_[v].offset_s; }
+  [[nodiscard]] MotionAlignment KnownAlignment(size_t v) const {
+    MotionAlignment known;
+    known.b_from_a = Compose(*cameras_[v].camera_from_rig, Inverse(*cameras_[0].camera_from_rig));
+    known.offset_s = *cameras_[v].offset_s;
+    return known;
+  }
   [[nodiscard]] std::vector<ViewMotion> MotionsOf(size_t v) const {
     std::vector<ViewMotion> motions;
     for (const TrackSequenceResult& person : alone_[v]) motions.push_back(MotionOf(person));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
 #include "geometry/base/stopwatch.h"
 #include "geometry/body/posed_body.h"
 #include "geometry/math/rotation.h"
@@ -23,12 +24,17 @@ namespace {
 
 using Eigen::Matrix3d;
 
+/// Deviation of an alignment's offset beyond which the motion says nothing about the clocks. The fit would take the
+/// velocities of the detector's errors for the person's.
+constexpr double kUntoldClock_s = 0.3;
+
 /// Options of a fit alone, which only gives a start.
 TrackSequenceOptions Alone(TrackSequenceOptions options, const ObservedView& view) {
   options.camera_knowledge = view.knowledge;
   options.solver = SequenceSolver::kChain;
   options.estimate_uncertainty = false;
   options.ground.contact_weight = options.ground.surface_weight = options.ground.balance_weight = 0;
+  options.max_fine_iterations = 1;
   options.user_terms.clear();
   return options;
 }
@@ -177,6 +183,15 @@ TrackSequenceResult FitViewAlone(const ObservedView& view, const TrackSequenceIn
   return FitClip(InputOfView(view, common), Alone(options, view));
 }
 
+std::vector<TrackSequenceResult> FitViewsAlone(const std::vector<ObservedView>& views, const TrackSequenceInput& common,
+                                               const std::vector<TrackSequenceOptions>& options) {
+  std::vector<TrackSequenceResult> alone(views.size());
+  const int threads = views.empty() ? 1 : ThreadsFor(options[0].num_threads);
+  ParallelFor(static_cast<int>(views.size()), threads,
+              [&](int v) { alone[v] = FitViewAlone(views[v], common, options[v]); });
+  return alone;
+}
+
 ViewMotion MotionOf(const TrackSequenceResult& alone) {
   constexpr int kFirst = 5, kCount = 12;  // shoulders to ankles
   ViewMotion motion;
@@ -196,8 +211,7 @@ TrackViewsResult TrackViews(const std::vector<ObservedView>& views, const TrackS
                             const TrackSequenceOptions& options) {
   const Stopwatch watch;
   FitsProgress fits(options, views.size() + 1);
-  std::vector<TrackSequenceResult> alone;
-  for (const ObservedView& view : views) alone.push_back(FitViewAlone(view, common, fits.NextFit()));
+  std::vector<TrackSequenceResult> alone = FitViewsAlone(views, common, fits.NextFits(views.size()));
   const double seconds_alone = watch.seconds();
   TrackViewsResult result = FitViewsTogether(views, std::move(alone), common, fits.NextFit());
   result.summary.seconds_alone = seconds_alone;
@@ -260,6 +274,13 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
   TrackSequenceOptions all = options;
   all.camera_knowledge = views[0].knowledge;
   result.joint = FitClip(input, all);
+  size_t next = 0;
+  for (ViewSummary& view : result.joint.summary.views) {
+    const PlacedView& at = placed[index[next]];
+    if (!others[next++].clock_known && at.offset_sigma_s > kUntoldClock_s) {
+      view.offset_sigma_s = std::max(view.offset_sigma_s, at.offset_sigma_s);
+    }
+  }
   summary.seconds = watch.seconds();
   return result;
 }

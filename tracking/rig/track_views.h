@@ -48,6 +48,9 @@ TrackSequenceInput InputOfView(const ObservedView& view, const TrackSequenceInpu
 /// The fit of a view by itself, which gives a start; usable or not.
 TrackSequenceResult FitViewAlone(const ObservedView& view, const TrackSequenceInput& common,
                                  const TrackSequenceOptions& options);
+/// That of every view, several at a time, with options of each.
+std::vector<TrackSequenceResult> FitViewsAlone(const std::vector<ObservedView>& views, const TrackSequenceInput& common,
+                                               const std::vector<TrackSequenceOptions>& options);
 /// Its motion: COCO's landmarks from the shoulders down, where the person is seen. Empty if the fit is not usable.
 ViewMotion MotionOf(const TrackSequenceResult& alone);
 /// The rest of TrackViews(), from those fits.
@@ -56,7 +59,9 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
 
 /// `common`: body, prior, lifter, stature and ground (in the first view's frame) for all views; its observations and
 /// camera are not used. Throws std::invalid_argument as TrackSequence() and with fewer than two views. The joint result
-/// has status kFailure, with the reason, when the first view shows nobody, or no other view shows the same motion.
+/// has status kFailure, with the reason, when the first view shows nobody, or no other view shows the same motion. The
+/// offset_sigma_s of a view whose clock the motion does not tell, as of a person who stands still, is that of its
+/// alignment, seconds.
 TrackViewsResult TrackViews(const std::vector<ObservedView>& views, const TrackSequenceInput& common,
                             const TrackSequenceOptions& options);
 

@@ -11,15 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/body/builtin_body.h"
-#include "data_tools/evaluation/metrics.h"
-#include "data_tools/learned/lifter_weights_io.h"
-#include "data_tools/learned/pose_prior_io.h"
-#include "data_tools/synthesis/clips/demo_motion.h"
-#include "data_tools/synthesis/clips/synth_clip.h"
-#include "geometry/base/hash_random.h"
-#include "geometry/math/rotation.h"
-#include "geometry/scene/camera_path.h"
+#include "tests/support/synthetic_rig.h"
 
 namespace bodyloom::track_views_test {
 namespace {
@@ -27,121 +19,6 @@ namespace {
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-/// A camera around the person whose clock shows offset_s + (1 + drift) t at time t.
-struct RigCamera {
-  double yaw_deg = 0, elevation_deg = 8;
-  double fps = 30, begin_s = 1, length_s = 2.5, offset_s = 0, drift = 0;
-  bool backwards = false;  ///< another motion: this one from its end to its begin
-};
-
-constexpr double kMotionRate = 600;
-
-const Motion& WholeMotion() {
-  static const Motion motion = DemoMotion(BuiltinBody(), static_cast<int>(6 * kMotionRate), kMotionRate);
-  return motion;
-}
-
-/// The demo motion at the true times of a camera's frames.
-Motion Sampled(const RigCamera& camera) {
-  const Motion& whole = WholeMotion();
-  Motion motion = whole;
-  const int frames = static_cast<int>(std::lround(camera.length_s * camera.fps));
-  motion.poses.resize(frames, whole.poses.cols());
-  motion.trans.resize(frames, 3);
-  motion.timestamps.resize(frames);
-  for (int t = 0; t < frames; ++t) {
-    const double time = camera.begin_s + t / camera.fps;
-    auto row = static_cast<Eigen::Index>(std::lround(time * kMotionRate));
-    if (camera.backwards) row = whole.poses.rows() - 1 - row;
-    motion.poses.row(t) = whole.poses.row(row);
-    motion.trans.row(t) = whole.trans.row(row);
-    motion.timestamps[t] = camera.offset_s + (1 + camera.drift) * time;
-  }
-  return motion;
-}
-
-/// Clips of all cameras, with 3 px of white noise, and their truth.
-struct SyntheticRig {
-  std::vector<RigCamera> cameras;
-  std::vector<SynthClip> clips;
-
-  explicit SyntheticRig(std::vector<RigCamera> given) : cameras(std::move(given)) {
-    const Motion spanned = Sampled(RigCamera());
-    for (size_t v = 0; v < cameras.size(); ++v) {
-      SynthClipOptions options;
-      options.seed = v + 1;
-      options.dense_per_frame = 0;
-      options.detection.noise = 0;
-      options.detection.swap_probability = 0;
-      options.camera.yaw_deg = cameras[v].yaw_deg;
-      options.camera.elevation_deg = cameras[v].elevation_deg;
-      const SynthCamera camera = PlaceSynthCamera(BuiltinBody(), spanned, options.camera);
-      clips.push_back(MakeSynthClip(BuiltinBody(), Sampled(cameras[v]), camera, options));
-      HashRandom random(v, {7});
-      for (Keypoint& point : clips[v].keypoints.points) {
-        point.x += static_cast<float>(3 * random.Normal());
-        point.y += static_cast<float>(3 * random.Normal());
-      }
-    }
-  }
-
-  enum class Known { kNothing, kIntrinsics, kAll };
-  [[nodiscard]] std::vector<ObservedView> Views(Known known) const {
-    std::vector<ObservedView> views;
-    for (size_t v = 0; v < clips.size(); ++v) {
-      ObservedView& view = views.emplace_back();
-      view.keypoints = &clips[v].keypoints;
-      if (known == Known::kNothing) continue;
-      view.knowledge = CameraKnowledge::kKnown;
-      view.camera = clips[v].truth.camera;
-      if (known == Known::kIntrinsics) continue;
-      view.camera_from_rig = clips[v].camera_from_world;
-      view.offset_s = cameras[v].offset_s - cameras[0].offset_s;
-    }
-    return views;
-  }
-
-  static TrackSequenceOptions Options(int threads) {
-    TrackSequenceOptions options;
-    options.num_threads = threads;
-    options.solver = SequenceSolver::kChain;
-    options.estimate_uncertainty = false;
-    return options;
-  }
-  static TrackViewsResult Track(const std::vector<ObservedView>& views,
-                                const TrackSequenceOptions& options = Options(2)) {
-    TrackSequenceInput common;
-    common.body = &BuiltinBody();
-    common.prior = &BuiltinPosePrior();
-    common.lifter = &BuiltinLifter();
-    return TrackViews(views, common, options);
-  }
-  [[nodiscard]] TrackViewsResult Track(Known known, int threads = 2) const {
-    return Track(Views(known), Options(threads));
-  }
-
-  /// Mean joint error after Procrustes, mm.
-  [[nodiscard]] double Joint(const TrackViewsResult& result) const { return Error(result.joint.track, 0); }
-  [[nodiscard]] double Alone(const TrackViewsResult& result, int v) const { return Error(result.alone[v].track, v); }
-
-  [[nodiscard]] double RotationErrorDeg(const ViewSummary& found, int v) const {
-    const CameraPose truth = Compose(clips[v].camera_from_world, Inverse(clips[0].camera_from_world));
-    return RotationAngleBetween(found.camera_from_scene.camera_from_world_rotation, truth.camera_from_world_rotation) *
-           180 / M_PI;
-  }
-  [[nodiscard]] double ClockErrorFrames(const ViewSummary& found, int v) const {
-    // At the middle of the first view's clip.
-    const std::vector<double>& times = clips[0].keypoints.timestamps;
-    const double middle = 0.5 * (times.front() + times.back());
-    const double truth = cameras[v].offset_s + cameras[v].drift * middle - cameras[0].offset_s;
-    return std::abs(found.offset_s - truth) * cameras[v].fps;
-  }
-
- private:
-  [[nodiscard]] double Error(const bodyloom::Track& track, int v) const {
-    return 1000 * ProcrustesPositionError(track.joints, clips[v].truth.joints).frames.mean;
-  }
-};
 using Known = SyntheticRig::Known;
 
 constexpr RigCamera kFirst, kSecond = {.yaw_deg = 60, .offset_s = 0.62}, kThird = {.yaw_deg = 150, .offset_s = -0.3};
@@ -229,6 +106,91 @@ TEST(TrackViews, AClockDriftsAndFrameRatesDiffer) {
   ExpectViewFound(rig, result, 1, 0.1);
 }
 
+TEST(TrackViews, AClockDriftsBy100PartsInAMillion) {
+  const double length_s = 20;
+  const SyntheticRig rig({{.fps = 15, .begin_s = 0, .length_s = length_s},
+                          {.yaw_deg = 80, .fps = 15, .begin_s = 0, .length_s = length_s, .offset_s = 2, .drift = 1e-4}},
+                         RandomRigMotion(1, length_s + 1), {}, 1);
+  TrackSequenceOptions options = SyntheticRig::Options(2);
+  options.estimate_uncertainty = true;
+  const TrackViewsResult result = SyntheticRig::Track(rig.Views(Known::kNothing), options);
+  ASSERT_TRUE(result.joint.summary.IsUsable()) << result.joint.summary.message;
+  const ViewSummary& view = result.joint.summary.views.at(0);
+  EXPECT_NEAR(view.rate, 1e-4, 3 * view.rate_sigma);
+  EXPECT_LE(view.rate_sigma, 6e-4);
+  EXPECT_LE(std::abs(view.rate - 1e-4), 3e-4);
+  EXPECT_LE(rig.ClockErrorFrames(view, 1), 0.4);
+}
+
+/// Motion tells the clocks, so that there is nothing to tell them by: the deviation is that of the alignment. Place and
+/// direction are found all the same.
+TEST(TrackViews, WhoStandsStillHasNoClock) {
+  Motion still = RandomRigMotion(2, 5);
+  for (Eigen::Index t = 1; t < still.poses.rows(); ++t) {
+    still.poses.row(t) = still.poses.row(0);
+    still.trans.row(t) = still.trans.row(0);
+  }
+  const RigNoise noise{.white_px = 0, .detector = 1};
+  const std::vector<RigCamera> cameras = {{.length_s = 4}, {.yaw_deg = 70, .length_s = 4, .offset_s = 0.4}};
+  const SyntheticRig rig(cameras, still, noise, 2), moving(cameras, RandomRigMotion(2, 5), noise, 2);
+  TrackSequenceOptions options = SyntheticRig::Options(2);
+  options.estimate_uncertainty = true;
+  const TrackViewsResult result = SyntheticRig::Track(rig.Views(Known::kNothing), options);
+  ASSERT_TRUE(result.joint.summary.IsUsable()) << result.joint.summary.message;
+  const ViewSummary& view = result.joint.summary.views.at(0);
+  EXPECT_GE(view.offset_sigma_s, 0.3);
+  EXPECT_LE(std::abs(view.offset_s - rig.TrueOffset(1)), 3 * view.offset_sigma_s);
+  EXPECT_LE(rig.RotationErrorDeg(view, 1), 15);
+  const TrackViewsResult told = SyntheticRig::Track(moving.Views(Known::kNothing), options);
+  ASSERT_TRUE(told.joint.summary.IsUsable()) << told.joint.summary.message;
+  EXPECT_LE(told.joint.summary.views.at(0).offset_sigma_s, 0.03);
+}
+
+/// With a detector's noise, slow and white, and landmarks that lie elsewhere on the body than the model's.
+TEST(TrackViews, StatedDeviationsCoverTheErrors) {
+  constexpr double kLength_s = 3;
+  TrackSequenceOptions options = SyntheticRig::Options(2);
+  options.estimate_uncertainty = true;
+  RigErrors errors;
+  for (const auto& [num_views, seed] : std::vector<std::pair<int, uint64_t>>{{4, 1}, {4, 2}, {8, 3}}) {
+    const SyntheticRig rig(RandomRigCameras(seed, num_views, kLength_s), RandomRigMotion(seed, kLength_s + 1),
+                           {.white_px = 0, .detector = 1, .bias_m = 0.015, .feet = false}, seed);
+    const TrackViewsResult result = SyntheticRig::Track(rig.Views(Known::kNothing), options);
+    ASSERT_TRUE(result.joint.summary.IsUsable()) << result.joint.summary.message;
+    EXPECT_THAT(result.summary.used, testing::Each(1));
+    errors.Add(rig, result);
+  }
+  for (const auto& [name, of] : errors.of) {
+    EXPECT_GE(of.Within(2), name == "focal length of the first" ? 0.6 : 0.85) << name;
+    EXPECT_GE(of.RmsOfSigma(), name == "mid-hip" ? 0.1 : 0.2) << name;
+    EXPECT_LE(of.RmsOfSigma(), 1.5) << name;
+  }
+  EXPECT_EQ(errors.of.size(), 8U);
+}
+
+TEST(TrackViews, ViewsAloneAreTheSameOneByOne) {
+  const SyntheticRig rig({{.length_s = 0.8}, {.yaw_deg = 60, .length_s = 0.8, .offset_s = 0.62}});
+  TrackSequenceInput common;
+  common.body = &BuiltinBody();
+  common.prior = &BuiltinPosePrior();
+  common.lifter = &BuiltinLifter();
+  const std::vector<ObservedView> views = rig.Views(Known::kNothing);
+  TrackSequenceOptions options = SyntheticRig::Options(2);
+  int reports = 0;
+  options.progress = [&](const TrackProgress&) {
+    ++reports;
+    return true;
+  };
+  const std::vector<TrackSequenceResult> together = FitViewsAlone(views, common, options);
+  EXPECT_GT(reports, 4);
+  ASSERT_EQ(together.size(), 2U);
+  for (size_t v = 0; v < 2; ++v) {
+    const TrackSequenceResult one = FitViewAlone(views[v], common, options);
+    EXPECT_EQ(one.track.motion.poses, together[v].track.motion.poses);
+    EXPECT_EQ(one.track.motion.trans, together[v].track.motion.trans);
+  }
+}
+
 TEST(TrackViews, AnotherMotionIsRefused) {
   const SyntheticRig rig({kFirst, {.yaw_deg = 60, .backwards = true}});
   const TrackViewsResult result = rig.Track(Known::kNothing);
@@ -270,7 +232,7 @@ TEST(TrackViews, AViewShowsNobody) {
   const TrackViewsResult result = SyntheticRig::Track(views);
   ASSERT_TRUE(result.joint.summary.IsUsable()) << result.joint.summary.message;
   EXPECT_THAT(result.summary.used, testing::ElementsAre(1, 0, 1));
-  EXPECT_LT(2 * rig.Joint(result), rig.Alone(result, 0));
+  EXPECT_LT(1.9 * rig.Joint(result), rig.Alone(result, 0));
 
   std::swap(views[0], views[1]);
   const TrackViewsResult first = SyntheticRig::Track(views);
