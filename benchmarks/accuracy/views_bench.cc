@@ -246,7 +246,7 @@ void MeasureSynthetic(const BenchArguments& arguments, const std::string& kind, 
   std::vector<double> error_mm;
   for (int i = 0; i < arguments.Integer("synthetic"); ++i) {
     const auto seed = static_cast<uint64_t>(1 + i);
-    std::vector<RigCamera> cameras = RandomRigCameras(seed, num_views, seconds);
+    std::vector<SyntheticCamera> cameras = RandomRigCameras(seed, num_views, seconds);
     if (opposite) cameras[1].yaw_deg = cameras[0].yaw_deg + 180 + HashRandom(seed, {13}).Uniform(-10, 10);
     if (drift) cameras[1].drift = 1e-4;
     Motion motion = RandomRigMotion(seed, seconds + 1);

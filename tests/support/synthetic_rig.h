@@ -29,7 +29,7 @@
 namespace bodyloom {
 
 /// A camera around the person whose clock shows offset_s + (1 + drift) t at time t.
-struct RigCamera {
+struct SyntheticCamera {
   double yaw_deg = 0, elevation_deg = 8;
   double fps = 30, begin_s = 1, length_s = 2.5, offset_s = 0, drift = 0;
   double focal_px = 0;     ///< 0: as of SynthCameraOptions
@@ -103,12 +103,12 @@ inline Motion RandomRigMotion(uint64_t seed, double seconds) {
 }
 
 /// Cameras around a person with clocks of their own, evenly but for up to 20 degrees; two are 40 to 140 degrees apart.
-inline std::vector<RigCamera> RandomRigCameras(uint64_t seed, int num_views, double length_s) {
-  std::vector<RigCamera> cameras;
+inline std::vector<SyntheticCamera> RandomRigCameras(uint64_t seed, int num_views, double length_s) {
+  std::vector<SyntheticCamera> cameras;
   HashRandom random(seed, {12});
   const double first = random.Uniform(0, 360), second = random.Uniform(40, 140);
   for (int v = 0; v < num_views; ++v) {
-    RigCamera& camera = cameras.emplace_back();
+    SyntheticCamera& camera = cameras.emplace_back();
     camera.yaw_deg = num_views == 2 ? first + v * second : first + 360.0 * v / num_views + random.Uniform(-20, 20);
     camera.elevation_deg = random.Uniform(-5, 25);
     camera.fps = random.Uniform() < 0.5 ? 25 : 30;
@@ -125,12 +125,12 @@ inline std::vector<RigCamera> RandomRigCameras(uint64_t seed, int num_views, dou
 /// Clips of all cameras and their truth.
 class SyntheticRig {
  public:
-  std::vector<RigCamera> cameras;
+  std::vector<SyntheticCamera> cameras;
   std::vector<SynthClip> clips;
 
-  explicit SyntheticRig(std::vector<RigCamera> given) : SyntheticRig(std::move(given), DemoRigMotion(), {}, 0) {}
+  explicit SyntheticRig(std::vector<SyntheticCamera> given) : SyntheticRig(std::move(given), DemoRigMotion(), {}, 0) {}
   /// `whole`: at kRigMotionRate, in the world.
-  SyntheticRig(std::vector<RigCamera> given, const Motion& whole, const RigNoise& noise, uint64_t seed)
+  SyntheticRig(std::vector<SyntheticCamera> given, const Motion& whole, const RigNoise& noise, uint64_t seed)
       : cameras(std::move(given)) {
     const Motion spanned = Sampled(whole, cameras[0]);
     std::map<std::string, Eigen::Vector3d> bias;
@@ -223,7 +223,7 @@ class SyntheticRig {
 
  private:
   /// The motion at the true times of a camera's frames.
-  static Motion Sampled(const Motion& whole, const RigCamera& camera) {
+  static Motion Sampled(const Motion& whole, const SyntheticCamera& camera) {
     Motion motion = whole;
     const int frames = static_cast<int>(std::lround(camera.length_s * camera.fps));
     motion.poses.resize(frames, whole.poses.cols());

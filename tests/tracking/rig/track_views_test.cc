@@ -21,7 +21,8 @@ using testing::HasSubstr;
 
 using Known = SyntheticRig::Known;
 
-constexpr RigCamera kFirst, kSecond = {.yaw_deg = 60, .offset_s = 0.62}, kThird = {.yaw_deg = 150, .offset_s = -0.3};
+constexpr SyntheticCamera kFirst, kSecond = {.yaw_deg = 60, .offset_s = 0.62},
+                                  kThird = {.yaw_deg = 150, .offset_s = -0.3};
 
 /// Alone, these views have 24 to 36 mm. Two views at 50 to 90 degrees, with other clocks, with and without the ground:
 /// 11 to 15 mm together, 1.8 to 2.5 times better than the better one.
@@ -131,7 +132,7 @@ TEST(TrackViews, WhoStandsStillHasNoClock) {
     still.trans.row(t) = still.trans.row(0);
   }
   const RigNoise noise{.white_px = 0, .detector = 1};
-  const std::vector<RigCamera> cameras = {{.length_s = 4}, {.yaw_deg = 70, .length_s = 4, .offset_s = 0.4}};
+  const std::vector<SyntheticCamera> cameras = {{.length_s = 4}, {.yaw_deg = 70, .length_s = 4, .offset_s = 0.4}};
   const SyntheticRig rig(cameras, still, noise, 2), moving(cameras, RandomRigMotion(2, 5), noise, 2);
   TrackSequenceOptions options = SyntheticRig::Options(2);
   options.estimate_uncertainty = true;
