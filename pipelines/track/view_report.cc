@@ -12,6 +12,7 @@
 #include "geometry/scene/camera_path.h"
 #include "pipelines/report_text.h"
 #include "tracking/problem/camera_knowledge.h"
+#include "tracking/rig/track_views.h"
 
 namespace bodyloom {
 namespace {
@@ -110,7 +111,9 @@ std::string ToText(const std::vector<ViewReport>& views) {
                                   {camera.translation_sigma_m, Fixed(camera.translation_sigma_m, 2) + " m"}});
     text += "; focal length " + Fixed(camera.camera.fx, 1) + " px" +
             WithinText({{camera.focal_log_sigma, Fixed(100 * camera.focal_log_sigma, 1) + " %"}});
-    if (v > 0) {
+    if (v > 0 && camera.offset_sigma_s > kUntoldClock_s) {
+      text += "; the motion does not tell its clock; " + std::to_string(view.frames) + " frames in common";
+    } else if (v > 0) {
       text += "; clock " + Fixed(camera.offset_s, 3) + " s, " + Fixed(camera.offset_s * view.fps, 1) + " frames" +
               WithinText({{camera.offset_sigma_s, Fixed(camera.offset_sigma_s, 3) + " s"}}) + "; " +
               std::to_string(view.frames) + " frames in common";

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "geometry/base/check.h"
-#include "geometry/base/stopwatch.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/rig.h"
 #include "tracking/clip/clip_fit.h"
@@ -205,9 +204,7 @@ TrackPeopleInViewsResult TrackPeopleInViews(const std::vector<ObservedScene>& sc
   result.left_out.resize(V);
   result.cameras.resize(V - 1);
   FitsProgress fits(options, NumPeople(scenes) + (P > 1 ? 2 : 1) * P);
-  const Stopwatch watch;
   PeopleInViews people(scenes, common, &fits);
-  result.seconds_alone = watch.seconds();
   if (fits.stopped()) return result;
 
   std::vector<MatchedViews> matched;

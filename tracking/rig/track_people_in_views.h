@@ -35,7 +35,6 @@ struct TrackPeopleInViewsResult {
   std::vector<ViewSummary> cameras;   ///< of each view but the first; as they are made where it is not used
   /// Focal length of the first camera by the leader's fit; vertical and ground of all.
   SharedScene scene;
-  double seconds_alone = 0;  ///< of the fits in each view
 };
 
 /// `common` as of TrackViews(). Progress runs over all fits; when its callback returns false, the fits so far are

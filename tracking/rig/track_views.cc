@@ -24,10 +24,6 @@ namespace {
 
 using Eigen::Matrix3d;
 
-/// Deviation of an alignment's offset beyond which the motion says nothing about the clocks. The fit would take the
-/// velocities of the detector's errors for the person's.
-constexpr double kUntoldClock_s = 0.3;
-
 /// Options of a fit alone, which only gives a start.
 TrackSequenceOptions Alone(TrackSequenceOptions options, const ObservedView& view) {
   options.camera_knowledge = view.knowledge;

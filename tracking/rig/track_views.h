@@ -30,6 +30,10 @@ struct ObservedView {
   const PictureVertical* picture_vertical = nullptr;  ///< as of TrackSequenceInput
 };
 
+/// Standard deviation of a clock's offset beyond which the motion says nothing about it: a fit takes the velocities of
+/// the detector's errors for the person's.
+inline constexpr double kUntoldClock_s = 0.3;
+
 struct TrackViewsSummary {
   std::vector<MotionAlignment> alignment;  ///< of each view with its neighbour in the tree; the first has none
   std::vector<int> neighbour;              ///< of each view; −1: the first, and views that are not used

@@ -11,6 +11,7 @@ namespace bodyloom::track_report_test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TrackReport SomeReport() {
   TrackReport report;
@@ -28,6 +29,21 @@ TrackReport SomeReport() {
   report.peak_memory_bytes = 3 << 20;
   report.outputs = {"track.npz"};
   return report;
+}
+
+TEST(TrackReport, AClockThatTheMotionDoesNotTellHasNoNumber) {
+  TrackReport report = SomeReport();
+  report.views.resize(2);
+  report.views[0].camera.name = "left";
+  ViewReport& view = report.views[1];
+  view.camera.name = "right";
+  view.fps = 30;
+  view.camera.offset_s = 0.1;
+  view.camera.offset_sigma_s = 0.004;
+  EXPECT_THAT(ToText(report), HasSubstr("clock 0.100 s, 3.0 frames (within 0.004 s)"));
+  view.camera.offset_sigma_s = 1.2;
+  EXPECT_THAT(ToText(report), HasSubstr("the motion does not tell its clock"));
+  EXPECT_THAT(ToText(report), Not(HasSubstr("clock 0.100")));
 }
 
 TEST(TrackReport, JsonHoldsWhatScriptsRelyOn) {
