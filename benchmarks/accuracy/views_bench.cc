@@ -122,7 +122,8 @@ struct TimedTrack {
       times[0].push_back(watch.Lap());
       times[1].push_back(CpuSeconds() - cpu);
       cpu = CpuSeconds();
-      std::vector<TrackSequenceResult> alone = FitViewsAlone(views, common, options);
+      std::vector<TrackSequenceResult> alone =
+          FitViewsAlone(views, common, std::vector<TrackSequenceOptions>(views.size(), options));
       times[2].push_back(CpuSeconds() - cpu);
       result = FitViewsTogether(views, std::move(alone), common, options);
       times[3].push_back(watch.Lap());

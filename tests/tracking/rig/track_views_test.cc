@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/support/synthetic_rig.h"
+#include "tracking/clip/fits_progress.h"
 
 namespace bodyloom::track_views_test {
 namespace {
@@ -177,13 +178,16 @@ TEST(TrackViews, ViewsAloneAreTheSameOneByOne) {
   common.lifter = &BuiltinLifter();
   const std::vector<ObservedView> views = rig.Views(Known::kNothing);
   TrackSequenceOptions options = SyntheticRig::Options(2);
-  int reports = 0;
-  options.progress = [&](const TrackProgress&) {
-    ++reports;
+  std::vector<double> fractions;
+  options.progress = [&](const TrackProgress& at) {
+    fractions.push_back(at.fraction);
     return true;
   };
-  const std::vector<TrackSequenceResult> together = FitViewsAlone(views, common, options);
-  EXPECT_GT(reports, 4);
+  FitsProgress fits(options, 3);
+  const std::vector<TrackSequenceResult> together = FitViewsAlone(views, common, fits.NextFits(2));
+  EXPECT_GT(fractions.size(), 4U);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_LE(fractions.back(), 2.0 / 3 + 1e-9);
   ASSERT_EQ(together.size(), 2U);
   for (size_t v = 0; v < 2; ++v) {
     const TrackSequenceResult one = FitViewAlone(views[v], common, options);
