@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/math/rotation.h"
+#include "geometry/scene/observations.h"
 #include "tracking/lifter/lifter_reading.h"
 #include "tracking/problem/track_options.h"
 #include "tracking/room/picture_vertical.h"
@@ -96,8 +97,9 @@ TEST(TurnToVertical, FurtherViewsTurnByTheirOwnLines) {
   std::vector<ViewObservations> seen(2);
   for (ViewObservations& view : seen) {
     view.lifted = own.lifted.frames;
-    view.keypoints.timestamps.assign(view.lifted.size(), 0);
-    for (size_t t = 0; t < view.lifted.size(); ++t) view.keypoints.timestamps[t] = 0.04 * double(t);
+    view.keypoints.names = CocoNames();
+    view.keypoints.points.resize(view.lifted.size() * view.keypoints.names.size());
+    for (size_t t = 0; t < view.lifted.size(); ++t) view.keypoints.timestamps.push_back(0.04 * double(t));
   }
   TurnViewsToVertical(input, layout, &seen);
   EXPECT_EQ(seen[0].lifted[2].points, own.lifted.frames[2].points) << "a view without lines stays";
