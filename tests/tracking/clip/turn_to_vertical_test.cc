@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "data_tools/body/builtin_body.h"
 #include "geometry/math/rotation.h"
 #include "geometry/scene/observations.h"
 #include "tracking/lifter/lifter_reading.h"
@@ -92,8 +93,9 @@ TEST(TurnToVertical, FurtherViewsTurnByTheirOwnLines) {
   views[1].picture_vertical = &lines;
   TrackSequenceInput input;
   input.views = &views;
-  FrameLayout layout;
-  for (int v = 0; v < 2; ++v) layout.AddView({CameraKnowledge::kKnown, MakePinhole(640, 480, 1000), true, true});
+  const Camera camera = MakePinhole(640, 480, 1000);
+  FrameLayout layout = FrameLayout::Make(BuiltinBody(), CameraKnowledge::kKnown, camera, {0}, 0);
+  for (int v = 0; v < 2; ++v) layout.AddView({CameraKnowledge::kKnown, camera, true, true});
   std::vector<ViewObservations> seen(2);
   for (ViewObservations& view : seen) {
     view.lifted = own.lifted.frames;

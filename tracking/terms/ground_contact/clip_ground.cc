@@ -153,7 +153,6 @@ void ClipGround::FindVertical(const SequenceProblem& problem, Shot* shot) const 
     }
   }
   JoinLines(problem, shot);
-  JoinLinesOfViews(problem, shot);
 }
 
 std::span<const LiftedFrame> ClipGround::FramesOfView(size_t v, const SequenceProblem& problem,
@@ -168,13 +167,12 @@ std::span<const LiftedFrame> ClipGround::FramesOfView(size_t v, const SequencePr
 
 void ClipGround::JoinLines(const SequenceProblem& problem, Shot* shot) const {
   shot->joined = {.up = shot->up.up, .sigma_rad = known_ != nullptr ? kKnownUpRad : shot->up_sigma_rad};
-  if (lines_ == nullptr || !shot->up.found) return;
-  shot->joined =
-      JoinVerticals(shot->up.up, shot->joined.sigma_rad, *lines_, std::exp(problem.log_focal), focal_log_sigma_);
-}
-
-void ClipGround::JoinLinesOfViews(const SequenceProblem& problem, Shot* shot) const {
-  for (size_t v = 0; known_ == nullptr && shot->up.found && v < view_lines_.size(); ++v) {
+  if (known_ != nullptr || !shot->up.found) return;
+  if (lines_ != nullptr) {
+    shot->joined =
+        JoinVerticals(shot->up.up, shot->joined.sigma_rad, *lines_, std::exp(problem.log_focal), focal_log_sigma_);
+  }
+  for (size_t v = 0; v < view_lines_.size(); ++v) {
     if (view_lines_[v] == nullptr) continue;
     const ViewLayout& layout = problem.layout.views[v];
     const Eigen::Matrix3d& R = problem.views[v].camera_from_scene.camera_from_world_rotation;

@@ -55,10 +55,9 @@ class ClipGround : public ClipTerm {
   /// The lifter's frames of view v over the time of a shot.
   [[nodiscard]] std::span<const LiftedFrame> FramesOfView(size_t v, const SequenceProblem& problem,
                                                           const Shot& shot) const;
-  /// Joins the lifter's vertical with the picture's lines, for the focal length of `problem`.
+  /// Joins the lifter's vertical with the picture's lines, for the focal length of `problem`, and with those of further
+  /// views as they stand to the first.
   void JoinLines(const SequenceProblem& problem, Shot* shot) const;
-  /// The same with the lines of further views, as they stand to the first.
-  void JoinLinesOfViews(const SequenceProblem& problem, Shot* shot) const;
   /// The plane that feet stand on in a shot whose vertical is found.
   [[nodiscard]] GroundPlane PlaneUnder(const std::vector<std::array<FootPlace, 2>>& feet,
                                        const std::vector<double>& timestamps, const JoinedVertical& vertical) const;
