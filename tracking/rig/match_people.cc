@@ -17,12 +17,12 @@ constexpr double kAgreementStep_s = 1.0 / 15;
 MatchedViews MatchUnder(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other,
                         const MotionAlignment& alignment, const Eigen::MatrixXd& unlike_m2) {
   std::vector<std::tuple<double, int, int>> pairs;
-  std::vector<std::vector<MotionAgreement>> agreements(first.size(), std::vector<MotionAgreement>(other.size()));
+  Eigen::MatrixXd overlap_s = Eigen::MatrixXd::Zero(unlike_m2.rows(), unlike_m2.cols());
   for (size_t i = 0; i < first.size(); ++i) {
     for (size_t j = 0; j < other.size(); ++j) {
       if (first[i].points.empty() || other[j].points.empty()) continue;
-      MotionAgreement& agreement = agreements[i][j];
-      agreement = AgreementOf(first[i], other[j], alignment.b_from_a, alignment.offset_s);
+      const MotionAgreement agreement = AgreementOf(first[i], other[j], alignment.b_from_a, alignment.offset_s);
+      overlap_s(static_cast<int>(i), static_cast<int>(j)) = agreement.overlap_s;
       const double apart = agreement.apart_m / kMaxApart_m;
       const double less_m2 =
           unlike_m2(static_cast<int>(i), static_cast<int>(j)) - agreement.distance_m * agreement.distance_m;
@@ -33,13 +33,13 @@ MatchedViews MatchUnder(const std::vector<ViewMotion>& first, const std::vector<
   std::sort(pairs.rbegin(), pairs.rend());
   MatchedViews matched;
   matched.person_of.assign(first.size(), -1);
-  matched.agreement.resize(first.size());
+  matched.evidence.assign(first.size(), 0);
   matched.alignment = alignment;
   std::vector<char> taken(other.size(), 0);
   for (const auto& [score, i, j] : pairs) {
     if (matched.person_of[i] >= 0 || taken[j] != 0) continue;
     matched.person_of[i] = j;
-    matched.agreement[i] = agreements[i][j];
+    matched.evidence[i] = overlap_s(i, j);
     taken[j] = 1;
     matched.score += score;
   }
@@ -83,7 +83,8 @@ MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector
                                                         static_cast<Eigen::Index>(other.size()), limit * limit);
   MatchedViews best;
   best.person_of.assign(first.size(), -1);
-  best.agreement.resize(first.size());
+  best.evidence.assign(first.size(), 0);
+  Eigen::MatrixXd evidence = Eigen::MatrixXd::Zero(unlike_m2.rows(), unlike_m2.cols());
   std::vector<MotionAlignment> hypotheses;
   for (size_t i = 0; i < first.size(); ++i) {
     for (size_t j = 0; j < other.size(); ++j) {
@@ -93,6 +94,7 @@ MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector
         hypotheses.push_back(alignment);
         const double unlike = std::max(limit, alignment.other_distance_m);
         unlike_m2(static_cast<int>(i), static_cast<int>(j)) = unlike * unlike;
+        evidence(static_cast<int>(i), static_cast<int>(j)) = alignment.score;
       } else if (best.alignment.why.empty()) {
         best.alignment.why = alignment.why;
       }
@@ -101,6 +103,9 @@ MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector
   for (const MotionAlignment& hypothesis : hypotheses) {
     MatchedViews matched = MatchUnder(first, other, hypothesis, unlike_m2);
     if (matched.score > best.score) best = std::move(matched);
+  }
+  for (size_t i = 0; i < first.size(); ++i) {
+    if (best.person_of[i] >= 0) best.evidence[i] = evidence(static_cast<int>(i), best.person_of[i]);
   }
   return best;
 }

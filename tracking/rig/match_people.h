@@ -25,9 +25,11 @@ MotionAgreement AgreementOf(const ViewMotion& a, const ViewMotion& b, const Came
 
 /// People of a view matched with those of another.
 struct MatchedViews {
-  std::vector<int> person_of;              ///< of each person of the first view: the one in the other view, −1: none
-  std::vector<MotionAgreement> agreement;  ///< of each of them with that person
-  MotionAlignment alignment;               ///< of the pair that tells it best; not found: no pair moves alike
+  std::vector<int> person_of;  ///< of each person of the first view: the one in the other view, −1: none
+  /// Evidence of each of these pairs for camera and clock: the score of its own alignment, 0 if that is not found, for
+  /// somebody who hardly moves agrees with everything; under one hypothesis the time that both show.
+  std::vector<double> evidence;
+  MotionAlignment alignment;  ///< of the pair that tells it best; not found: no pair moves alike
   double score = 0;  ///< of all matched people: Σ overlap (d₀ − distance²) (1 − (apart / kMaxApart_m)²), m² s
 };
 MatchedViews MatchPeople(const std::vector<ViewMotion>& first, const std::vector<ViewMotion>& other);

@@ -48,25 +48,11 @@ class PeopleInViews {
   /// People of a view matched with those of the first.
   [[nodiscard]] MatchedViews MatchWithFirst(size_t v) const {
     const std::vector<ViewMotion> first = MotionsOf(0), other = MotionsOf(v);
-    return IsKnown(v) ? MatchPeople(first, other, KnownAlignment(v)) : MatchPeople(first, other);
-  }
-
-  /// Evidence for cameras and clocks in the motion of a person whom several views show, in sum over the views
-  /// (MotionAlignment::score): somebody who hardly moves agrees with everything. Of known views the time in common.
-  [[nodiscard]] double EvidenceOf(const std::vector<int>& person_in_view) const {
-    double score = 0;
-    const ViewMotion first = MotionOf(alone_[0][person_in_view[0]]);
-    for (size_t v = 1; v < person_in_view.size(); ++v) {
-      if (person_in_view[v] < 0) continue;
-      const ViewMotion other = MotionOf(alone_[v][person_in_view[v]]);
-      if (IsKnown(v)) {
-        const MotionAlignment known = KnownAlignment(v);
-        score += AgreementOf(first, other, known.b_from_a, known.offset_s).overlap_s;
-      } else if (const MotionAlignment alignment = AlignMotions(first, other); alignment.found) {
-        score += alignment.score;
-      }
-    }
-    return score;
+    if (!cameras_[v].camera_from_rig || !cameras_[v].offset_s) return MatchPeople(first, other);
+    MotionAlignment known;
+    known.b_from_a = Compose(*cameras_[v].camera_from_rig, Inverse(*cameras_[0].camera_from_rig));
+    known.offset_s = *cameras_[v].offset_s;
+    return MatchPeople(first, other, known);
   }
 
   /// Fits a person in all views that show them; `index` are these views.
@@ -123,13 +109,6 @@ class PeopleInViews {
   }
 
  private:
-  [[nodiscard]] bool IsKnown(size_t v) const { return cameras_[v].camera_from_rig && cameras_[v].offset_s; }
-  [[nodiscard]] MotionAlignment KnownAlignment(size_t v) const {
-    MotionAlignment known;
-    known.b_from_a = Compose(*cameras_[v].camera_from_rig, Inverse(*cameras_[0].camera_from_rig));
-    known.offset_s = *cameras_[v].offset_s;
-    return known;
-  }
   [[nodiscard]] std::vector<ViewMotion> MotionsOf(size_t v) const {
     std::vector<ViewMotion> motions;
     for (const TrackSequenceResult& person : alone_[v]) motions.push_back(MotionOf(person));
@@ -182,10 +161,10 @@ TrackSequenceResult FitPersonInViews(size_t p, const KnownGround* ground, People
 }
 
 /// Vertical and ground of all fits. Sizes are the views' business: they tell distances.
-SharedScene SceneOfPeople(const std::vector<TrackSequenceResult>& people, const std::optional<FocalPrior>& prior) {
+SharedScene SceneOfPeople(const std::vector<TrackSequenceResult>& people, const Camera& camera,
+                          const std::optional<FocalPrior>& prior) {
   std::vector<TrackSequenceSummary> summaries;
   for (const TrackSequenceResult& person : people) summaries.push_back(person.summary);
-  const Camera& camera = people[0].track.camera;
   CommonGroundOptions ground;
   ground.size_sigma = 0;
   return JoinScenes(summaries, prior.value_or(FocalPrior::ForImage(camera.width, camera.height)), ground);
@@ -217,9 +196,10 @@ TrackPeopleInViewsResult TrackPeopleInViews(const std::vector<ObservedScene>& sc
   for (size_t p = 0; p < P; ++p) result.person_in_view[p][0] = static_cast<int>(p);
   double best = 0;
   for (size_t p = 0; p < P; ++p) {
-    const double score = IsMatched(result.person_in_view[p]) ? people.EvidenceOf(result.person_in_view[p]) : 0;
-    if (score <= best) continue;
-    best = score;
+    double evidence = 0;
+    for (const MatchedViews& view : matched) evidence += view.evidence[p];
+    if (evidence <= best) continue;
+    best = evidence;
     result.leader = static_cast<int>(p);
   }
   double focal_log_sigma = 0;
@@ -245,7 +225,7 @@ TrackPeopleInViewsResult TrackPeopleInViews(const std::vector<ObservedScene>& sc
     if (static_cast<int>(p) == result.leader) continue;
     result.people[p] = FitPersonInViews(p, nullptr, &people, &result.person_in_view[p]);
   }
-  result.scene = SceneOfPeople(result.people, scenes[0].camera.focal_prior);
+  result.scene = SceneOfPeople(result.people, result.people[result.leader].track.camera, scenes[0].camera.focal_prior);
   result.scene.focal_px = result.people[result.leader].track.camera.fx;
   result.scene.focal_log_sigma = focal_log_sigma;
   for (size_t p = 0; P > 1 && result.scene.has_up && common.ground == nullptr && p < P && !fits.stopped(); ++p) {

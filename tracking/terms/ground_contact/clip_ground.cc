@@ -258,7 +258,7 @@ bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coar
   std::vector<char> held(lifted_.size(), 0);
   bool any = false;
   for (Shot& shot : shots_) {
-    if (!views_.empty()) FindVertical(*coarse, &shot);
+    FindVertical(*coarse, &shot);
     if (!shot.up.found) {
       shot.ground.why = "the vertical is not clear";
       continue;
@@ -279,7 +279,6 @@ bool ClipGround::LearnFrom(const std::vector<int>& frames, SequenceProblem* coar
                               .end = frames[index[stance.end - 1]] + 1,
                               .seconds = stance.seconds});
     }
-    JoinLines(*coarse, &shot);
     shot.ground = PlaneUnder(feet, timestamps, shot.joined);
     const std::optional<double> level =
         shot.ground.found ? std::optional(shot.ground.offset_m - kAnkleHeight) : std::nullopt;
