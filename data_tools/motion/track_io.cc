@@ -93,6 +93,7 @@ class TrackReader {
     track_.joint_sigma.setConstant(T_, J, std::numeric_limits<double>::quiet_NaN());
     ReadWorld();
     if (Has("joint_sigma")) track_.joint_sigma = Array("joint_sigma", {T_, -1}).ToMatrix();
+    ReadPlayback();
     if (Has("root_sigma")) track_.root_sigma = Array("root_sigma", {T_}).ToMatrix();
     return std::move(track_);
   }
@@ -303,6 +304,19 @@ class TrackReader {
     world.height_sigma_m = sigma[1];
   }
 
+  void ReadPlayback() {
+    VideoPlayback& playback = track_.playback;
+    if (Has("video_turn_deg")) {
+      const double turn = Finite("video_turn_deg", {}).front();
+      if (turn != 0 && turn != 90 && turn != 180 && turn != 270) {
+        Fail(Concatenate("video_turn_deg: ", turn, ", expected 0, 90, 180 or 270"));
+      }
+      playback.turn_deg = static_cast<int>(turn);
+    }
+    if (Has("video_slowdown")) playback.slowdown = Finite("video_slowdown", {}).front();
+    if (playback.slowdown <= 0) Fail(Concatenate("video_slowdown: ", playback.slowdown, ", expected above 0"));
+  }
+
   void ReadPoints(const std::string& name, int64_t n, std::vector<MatrixX3d>* points) const {
     if (!Has(name)) return;
     const NdArray& array = Array(name, {T_, n, 3});
@@ -362,6 +376,9 @@ void WriteTrack(const std::string& path, const Track& track) {
     arrays["world_source"] = NdArray::FromString(ToString(track.world->source));
     arrays["world_sigma"] = NdArray::FromDoubles(sigma, {2});
   }
+  const VideoPlayback &playback = track.playback, as_stored;
+  if (playback.turn_deg != as_stored.turn_deg) arrays["video_turn_deg"] = NdArray::FromDouble(playback.turn_deg);
+  if (playback.slowdown != as_stored.slowdown) arrays["video_slowdown"] = NdArray::FromDouble(playback.slowdown);
   if (!track.joints.empty()) {
     CheckPoints("joints", track.joints, T, J);
     arrays["joints"] = Stack(track.joints);

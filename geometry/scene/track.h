@@ -38,6 +38,13 @@ enum class FrameStatus : uint8_t {
 
 std::string ToString(FrameStatus status);
 
+/// The way in which a video is played to see a track's camera and time.
+struct VideoPlayback {
+  int turn_deg = 0;     ///< every frame is turned clockwise by 0, 90, 180 or 270 degrees
+  double slowdown = 1;  ///< seconds of the video per second of the track: 8 if 240 frames a second are stored as 30
+  bool operator==(const VideoPlayback&) const = default;
+};
+
 /// A Motion in the camera frame together with its camera. All positions in metres, camera frame. With a moving camera
 /// they are in the scene (geometry/scene/camera_path.h): a static frame, to which every frame's camera is known.
 struct Track {
@@ -54,6 +61,7 @@ struct Track {
   Eigen::VectorXd root_sigma;  ///< T: that of the mid-hip's own position; or empty
   /// Vertical and ground; absent when unknown (render/view/floor.h then assumes a level camera).
   std::optional<WorldFrame> world;
+  VideoPlayback playback;  ///< of the video that the track was made from
   [[nodiscard]] int num_frames() const { return motion.num_frames(); }
   [[nodiscard]] bool HasMovingCamera() const { return !camera_from_scene.empty(); }
   /// The camera of frame t: `camera`, with (s, tx, ty) of that frame for weak perspective.

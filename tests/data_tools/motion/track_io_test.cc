@@ -217,6 +217,18 @@ TEST(TrackIo, WorldIsKeptAndMayBeMissing) {
   EXPECT_THAT(ErrorOf(With(given, "world_sigma", {-1, 0}, {2})), HasSubstr("world_sigma"));
 }
 
+TEST(TrackIo, PlaybackOfTheVideoIsKept) {
+  EXPECT_EQ(Read(SampleArrays(CameraModel::kPinhole)).playback, VideoPlayback());
+  const TemporaryFolder folder;
+  Track track = SampleTrack(CameraModel::kPinhole);
+  track.playback = {270, 8};
+  WriteTrack(folder.File("t.npz"), track);
+  EXPECT_EQ(ReadTrack(folder.File("t.npz")).playback, track.playback);
+  EXPECT_THAT(ErrorOf(With(ForeignArrays(), "video_turn_deg", {45}, {})), HasSubstr("video_turn_deg: 45"));
+  EXPECT_THAT(ErrorOf(With(ForeignArrays(), "video_slowdown", {0}, {})), HasSubstr("video_slowdown: 0"));
+  EXPECT_THAT(ErrorOf(With(ForeignArrays(), "video_slowdown", {kNan}, {})), HasSubstr("video_slowdown: NaN"));
+}
+
 TEST(TrackIo, ThePathOfACameraThatMovesIsKeptForThoseWhoTakeIt) {
   const TemporaryFolder folder;
   Track track = SampleTrack(CameraModel::kPinhole);
