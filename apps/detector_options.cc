@@ -17,6 +17,23 @@ std::map<std::string, PoseNetworkSize> NetworksByName() {
 
 }  // namespace
 
+void AddPlaybackOptions(CLI::App& app, std::optional<int>* turn_deg, double* captured_fps, const std::string& group) {
+  app.add_option_function<std::string>(
+         "--rotate",
+         [turn_deg](const std::string& word) {
+           *turn_deg = word == "auto" ? std::nullopt : std::optional<int>(std::stoi(word));
+         },
+         "turn the video clockwise by so many degrees: of a camera that lay or hung; auto: so that people are upright")
+      ->group(group)
+      ->type_name("")
+      ->check(CLI::IsMember({"90", "180", "270", "auto"}));
+  app.add_option("--captured-fps", *captured_fps,
+                 "slow motion: frames a second at which it was filmed (default: as it is played)")
+      ->group(group)
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber);
+}
+
 void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group) {
   app.add_option("--detector", detector->blazepose.network,
                  "size of BlazePose's network: lite, full or heavy (default), each slower and surer")
@@ -30,6 +47,18 @@ void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* d
       ->check(CLI::PositiveNumber)
       ->group(group)
       ->type_name("HZ");
+  app.add_option("--search-interval", detector->blazepose.search_interval,
+                 "frames between BlazePose's searches for new people")
+      ->group(group)
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--tiles", detector->blazepose.tile_levels,
+                 "BlazePose searches squares of down to 1/N of the longer side: finds people from about 0.28/N of it "
+                 "(8 by itself when nobody is found)")
+      ->group(group)
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 8));
   app.add_option("--models", detector->models,
                  "folder of BlazePose's networks (default: $BODYLOOM_MODELS, or where they are installed)")
       ->group(group)

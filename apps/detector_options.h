@@ -2,6 +2,7 @@
 /// Options of every verb that detects people in a video.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "tracking/detection/frame_detector.h"
@@ -12,7 +13,11 @@ class App;
 
 namespace bodyloom {
 
-/// Adds --detector, --detect-rate, --models, --pose-model and --box-model, in this group of the help.
+/// Adds --rotate and --captured-fps, in this group of the help. `turn_deg`: none for auto.
+void AddPlaybackOptions(CLI::App& app, std::optional<int>* turn_deg, double* captured_fps, const std::string& group);
+
+/// Adds --detector, --detect-rate, --search-interval, --tiles, --models, --pose-model and --box-model, in this group of
+/// the help.
 void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group);
 
 }  // namespace bodyloom

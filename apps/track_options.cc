@@ -44,10 +44,11 @@ void AddImageSize(CLI::App& app, TrackRequest* request) {
 void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& detect) {
   TrackSettings& c = *request;
   AddDetectorOptions(app, &c.detector, &c.detect_rate, detect);
+  AddPlaybackOptions(app, &c.turn_deg, &c.captured_fps, detect);
   app.add_flag_callback(
          "--no-mask", [&c] { c.use_mask = false; }, "do not use the person's mask")
       ->group(detect);
-  app.add_option("--from", c.from_s, "begin at this second of the video")
+  app.add_option("--from", c.from_s, "begin at this second of the video, or of the detections")
       ->group(detect)
       ->check(Quiet(CLI::NonNegativeNumber));
   app.add_option("--to", c.to_s, "end with this second (default: the end)")

@@ -13,7 +13,7 @@ class App;
 
 namespace bodyloom {
 
-/// Adds those of AddDetectorOptions(), --no-mask, --from and --to, in this group of the help.
+/// Adds those of AddDetectorOptions() and AddPlaybackOptions(), --no-mask, --from and --to, in this group of the help.
 void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& group);
 /// Adds --cameras and --focal.
 void AddCalibrationOptions(CLI::App& app, TrackSettings* request);

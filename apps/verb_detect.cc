@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,7 @@ constexpr const char* kDetectFooter =
 
 struct Parsed {
   DetectClipRequest request;
+  std::optional<int> turn_deg = 0;  ///< --rotate; none: auto
   std::string dense_model, device = "cpu", colours;
   bool quiet = false;
 };
@@ -61,7 +63,6 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
   auto parsed = std::make_shared<Parsed>();
   DetectClipRequest* request = &parsed->request;
   DetectPeopleRequest& detect = request->detect;
-  PeopleDetectorOptions& blazepose = detect.detector.blazepose;
   verb->add_option("--video", detect.video, "the video, or a folder of images")->required()->type_name("PATH");
   verb->add_option("--out", request->out, "everybody's landmarks, .npz")->type_name("FILE");
   verb->add_option("--mask", request->mask, "the mask of one person, .npz")->type_name("FILE");
@@ -71,23 +72,18 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
   verb->add_option("--person", request->person, "whose mask and dense keypoints: 0 is the largest and longest in view")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--people", blazepose.max_people, "follow at most so many people at a time (0: everybody)")
+  verb->add_option("--people", detect.detector.blazepose.max_people,
+                   "follow at most so many people at a time (0: everybody)")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   AddDetectorOptions(*verb, &detect.detector, &detect.detect_rate, "Options");
+  AddPlaybackOptions(*verb, &parsed->turn_deg, &detect.span.captured_fps, "Options");
   verb->add_option("--from", detect.span.from_s, "begin at this second")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--to", detect.span.to_s, "end with this second (default: the end)")->check(CLI::NonNegativeNumber);
   verb->add_option("--fps", detect.span.fps, "frame rate of a folder of images (default 30)")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--search-interval", blazepose.search_interval, "frames between BlazePose's searches for new people")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--tiles", blazepose.tile_levels,
-                   "BlazePose searches squares of down to 1/N of the longer side: finds people from about 0.28/N of it")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 8));
   verb->add_option("--json", request->json, "who was found, and times")->type_name("FILE");
   verb->add_flag("--quiet", parsed->quiet, "print nothing but errors");
   AddDenseOptions(verb, parsed.get());
@@ -97,6 +93,8 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
         if (!dense) ExecNeural(arguments);
         parsed->request.dense_detector = dense(parsed->dense_model, parsed->device, parsed->colours);
       }
+      parsed->request.find_turn = !parsed->turn_deg;
+      parsed->request.detect.span.turn_deg = parsed->turn_deg.value_or(0);
       const DetectClipReport report = DetectClip(parsed->request, CommandCallbacks(parsed->quiet));
       if (!parsed->quiet) std::cout << ToText(report);
     };

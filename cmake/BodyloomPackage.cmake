@@ -62,7 +62,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbodyloom-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libavcodec-dev, libavformat-dev, libavutil-dev, libceres-dev, libdnnl-dev, libeigen3-dev, libhwy-dev, libmatio-dev, libopencv-dev, \
+    "libavcodec-dev, libavfilter-dev, libavformat-dev, libavutil-dev, libceres-dev, libdnnl-dev, libeigen3-dev, libhwy-dev, libmatio-dev, libopencv-dev, \
 libopenmesh-dev, libswscale-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS libtorch-dev)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Libraries and headers of Bodyloom, for find_package(bodyloom).")

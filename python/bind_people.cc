@@ -15,6 +15,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "pipelines/detect/detect_people.h"
+#include "pipelines/detect/find_turn.h"
 #include "pipelines/files.h"
 #include "pipelines/track/track_people_clip.h"
 #include "pipelines/track/track_people_in_videos.h"
@@ -41,6 +42,8 @@ people, person  at most so many (0: everybody); only this one; min_seconds: whoe
 detector        size of BlazePose's network: "lite", "full" or "heavy"; pose_model, box_model: networks of your own;
                 models: folder of BlazePose's (`./dev models`); detect_rate: detect so many frames a second only while
                 everybody moves slowly; mask: use people's masks
+rotate          turn the video clockwise by 90, 180 or 270 degrees, or "auto", so that people are upright;
+                captured_fps: slow motion, frames a second at which it was filmed
 camera, body    objects or files
 rest            as of track()
 
@@ -101,8 +104,10 @@ std::vector<std::shared_ptr<TrackObject>> RunPeopleInVideos(const TrackPeopleInV
   return ReadTracks(report, body);
 }
 
-std::vector<std::shared_ptr<KeypointSequence>> Detect(const DetectPeopleRequest& request, const py::object& progress) {
+std::vector<std::shared_ptr<KeypointSequence>> Detect(DetectPeopleRequest request, bool find_turn,
+                                                      const py::object& progress) {
   return PythonCallbacks(progress).Run([&](const PipelineCallbacks& callbacks) {
+    if (find_turn) request.span.turn_deg = FindTurn(request, callbacks);
     const DetectedClip clip = DetectPeople(request, callbacks);
     std::vector<std::shared_ptr<KeypointSequence>> people;
     for (const PersonTrack& person : LinkPeople(clip.people)) {
@@ -124,8 +129,9 @@ void BindPeople(py::module_& module) {
          std::optional<double> stature_m, const std::optional<Path>& prior, const std::optional<Path>& lifter,
          const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
          const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
-         std::optional<double> end_s, const std::string& solver, int threads, bool uncertainty, bool ground,
-         bool overlay, bool side_view, bool masks, bool coarse_masks, bool report, const py::object& progress) {
+         std::optional<double> end_s, const TurnArgument& rotate, std::optional<double> captured_fps,
+         const std::string& solver, int threads, bool uncertainty, bool ground, bool overlay, bool side_view,
+         bool masks, bool coarse_masks, bool report, const py::object& progress) {
         BODYLOOM_CHECK(people >= 0 && person.value_or(0) >= 0 && min_seconds >= 0,
                        "people, person, min_seconds: expected 0 or more");
         BODYLOOM_CHECK(out || !(side_view || masks || report),
@@ -149,6 +155,7 @@ void BindPeople(py::module_& module) {
         track.detect_rate = PositiveOr0(detect_rate, "detect_rate");
         track.use_mask = mask;
         track.from_s = begin_s, track.to_s = end_s.value_or(-1);
+        track.turn_deg = TurnFrom(rotate), track.captured_fps = PositiveOr0(captured_fps, "captured_fps");
         request.side_view = side_view;
         track.solve.solver = SequenceSolverFromString(solver);
         track.solve.num_threads = threads;
@@ -172,34 +179,37 @@ void BindPeople(py::module_& module) {
       py::arg("body") = py::none(), py::arg("stature_m") = py::none(), py::arg("prior") = py::none(),
       py::arg("lifter") = py::none(), py::arg("detector") = "heavy", py::arg("pose_model") = py::none(),
       py::arg("box_model") = py::none(), py::arg("models") = py::none(), py::arg("detect_rate") = py::none(),
-      py::arg("mask") = true, py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(),
-      py::arg("solver") = ToString(TrackSequenceOptions().solver), py::arg("threads") = 0,
-      py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true, py::arg("side_view") = false,
-      py::arg("masks") = false, py::arg("coarse_masks") = false, py::arg("report") = false,
-      py::arg("progress") = py::none(), kRunDoc);
+      py::arg("mask") = true, py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("rotate") = 0,
+      py::arg("captured_fps") = py::none(), py::arg("solver") = ToString(TrackSequenceOptions().solver),
+      py::arg("threads") = 0, py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true,
+      py::arg("side_view") = false, py::arg("masks") = false, py::arg("coarse_masks") = false,
+      py::arg("report") = false, py::arg("progress") = py::none(), kRunDoc);
   module.def(
       "detect",
       [](const Path& video, std::optional<double> fps, const std::string& detector,
          const std::optional<Path>& pose_model, const std::optional<Path>& box_model, const std::optional<Path>& models,
-         int people, std::optional<double> detect_rate, double begin_s, std::optional<double> end_s, int threads,
-         const py::object& progress) {
+         int people, std::optional<double> detect_rate, double begin_s, std::optional<double> end_s,
+         const TurnArgument& rotate, std::optional<double> captured_fps, int threads, const py::object& progress) {
         BODYLOOM_CHECK(people >= 0, "people: expected 0 or more, found ", people);
         CheckThreads(threads);
         DetectPeopleRequest request;
         request.video = video.string();
-        request.span = {PositiveOr0(fps, "fps"), begin_s, end_s.value_or(-1)};
+        const std::optional<int> turn_deg = TurnFrom(rotate);
+        request.span = {PositiveOr0(fps, "fps"), begin_s, end_s.value_or(-1), turn_deg.value_or(0),
+                        PositiveOr0(captured_fps, "captured_fps")};
         request.detector = DetectorFrom(detector, pose_model, box_model, models);
         request.detector.blazepose.max_people = people;
         request.detector.blazepose.num_threads = ThreadsFor(threads);
         request.detect_rate = PositiveOr0(detect_rate, "detect_rate");
         RequireReadable(request.video, "video");
         RequirePoseModels(request.detector);
-        return Detect(request, progress);
+        return Detect(request, !turn_deg, progress);
       },
       py::arg("video"), py::kw_only(), py::arg("fps") = py::none(), py::arg("detector") = "heavy",
       py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(), py::arg("models") = py::none(),
       py::arg("people") = 0, py::arg("detect_rate") = py::none(), py::arg("begin_s") = 0.0,
-      py::arg("end_s") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(), kDetectDoc);
+      py::arg("end_s") = py::none(), py::arg("rotate") = 0, py::arg("captured_fps") = py::none(),
+      py::arg("threads") = 0, py::arg("progress") = py::none(), kDetectDoc);
 }
 
 }  // namespace bodyloom::python

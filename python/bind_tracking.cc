@@ -30,7 +30,10 @@ What was seen
   dense           file or folder of dense surface keypoints; dense_uv_sigma: their noise in chart units
   part_labels     .npz with the DensePose part of every pixel
   video           for image size and frame rate; alone, people are detected in it (detector, pose_model, box_model,
-                  models, detect_rate, mask, begin_s, end_s); everybody at once: run()
+                  models, detect_rate, mask); everybody at once: run()
+  begin_s, end_s  seconds of the video, or of the keypoints
+  rotate          turn the video clockwise by 90, 180 or 270 degrees, or "auto", so that people are upright
+  captured_fps    slow motion: frames a second at which the video was filmed
 The camera
   camera          Camera, or a calibration file of which `view` names the camera
   focal_px        of a centred camera without distortion, pixels
@@ -140,7 +143,8 @@ void BindTracking(py::module_& module) {
          bool skip_unneeded, double rendered_weight, double velocity_weight, std::optional<double> straight_knees,
          const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
          const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
-         std::optional<double> end_s, const py::object& progress) {
+         std::optional<double> end_s, const TurnArgument& rotate, std::optional<double> captured_fps,
+         const py::object& progress) {
         TrackArguments arguments;
         TrackRequest& request = arguments.request;
         request.dense = TextOf(dense);
@@ -172,6 +176,8 @@ void BindTracking(py::module_& module) {
         request.use_mask = mask;
         request.from_s = begin_s;
         request.to_s = end_s.value_or(-1);
+        request.turn_deg = TurnFrom(rotate);
+        request.captured_fps = PositiveOr0(captured_fps, "captured_fps");
         request.straight_knees = straight_knees;
         TrackSequenceOptions& solve = request.solve;
         solve.initialiser_weight = init_weight;
@@ -205,7 +211,8 @@ void BindTracking(py::module_& module) {
       py::arg("velocity_weight") = defaults.solve.velocity_weight, py::arg("straight_knees") = py::none(),
       py::arg("detector") = "heavy", py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(),
       py::arg("models") = py::none(), py::arg("detect_rate") = py::none(), py::arg("mask") = true,
-      py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("progress") = py::none(), kTrackFunctionDoc);
+      py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("rotate") = 0,
+      py::arg("captured_fps") = py::none(), py::arg("progress") = py::none(), kTrackFunctionDoc);
   module.def("synthetic_clip", &SyntheticClip, py::arg("frames") = 180, py::kw_only(), py::arg("fps") = 30.0,
              py::arg("image_size") = std::pair(960, 720), py::arg("seed") = 1, py::arg("elevation_deg") = 8.0,
              py::call_guard<py::gil_scoped_release>(), kSyntheticClipDoc);

@@ -60,6 +60,13 @@ void PythonCallbacks::RethrowRaised() {
   if (raised_) std::rethrow_exception(std::exchange(raised_, nullptr));
 }
 
+std::optional<int> TurnFrom(const TurnArgument& rotate) {
+  if (const auto* degrees = std::get_if<int>(&rotate)) return *degrees;
+  const auto& word = std::get<std::string>(rotate);
+  BODYLOOM_CHECK(word == "auto", "rotate: \"", word, "\", expected 0, 90, 180, 270 or \"auto\"");
+  return std::nullopt;
+}
+
 double PositiveOr0(const std::optional<double>& value, const char* name) {
   BODYLOOM_CHECK(!value || (*value > 0 && std::isfinite(*value)), name, ": expected a number above 0, found ", *value);
   return value.value_or(0);

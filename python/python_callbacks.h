@@ -81,6 +81,10 @@ using CameraArgument = std::variant<Camera, Path>;
 /// The given number, which must be positive; 0 if there is none.
 double PositiveOr0(const std::optional<double>& value, const char* name);
 
+/// A clockwise turn in degrees, or "auto", which gives none. Throws std::invalid_argument for another text.
+using TurnArgument = std::variant<int, std::string>;
+std::optional<int> TurnFrom(const TurnArgument& rotate);
+
 /// A path is stored in the request, an object in `given`.
 void TakeCamera(const std::optional<CameraArgument>& argument, TrackSettings* request, GivenInMemory* given);
 void TakeBody(const std::optional<BodyArgument>& argument, TrackSettings* request, GivenInMemory* given);

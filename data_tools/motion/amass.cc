@@ -15,7 +15,7 @@ namespace bodyloom {
 namespace {
 
 constexpr int kBodyColumns = 66, kSmplColumns = 72, kSmplhColumns = 156, kSmplxColumns = 165, kHandColumns = 90;
-constexpr int kSmplxBetas = 16;
+constexpr int kAmassBetas = 16;
 
 /// One frame, or a clip with a gap, has no frame rate of its own; AMASS readers insist on a number.
 double RateForReaders(const Motion& motion) {
@@ -62,6 +62,12 @@ std::vector<double> TimestampsOf(const NpzArrays& arrays, int num_frames, const 
     }
   }
   return timestamps;
+}
+
+/// The body whose shape `betas` of the file cannot state.
+void AddSourceBody(const Motion& motion, NpzArrays* arrays) {
+  (*arrays)["source_body"] = NdArray::FromString(motion.body);
+  (*arrays)["source_betas"] = NdArray::FromDoubles(motion.betas.data(), {motion.betas.size()});
 }
 
 Motion::Up UpOf(const NpzArrays& arrays, const std::string& where) {
@@ -128,8 +134,15 @@ void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vect
   poses.leftCols(kept) = z_up.poses.leftCols(kept);
   NpzArrays arrays;
   arrays["poses"] = NdArray::FromDoubles(poses.data(), {T, kSmplhColumns});
-  arrays["trans"] = NdArray::FromDoubles(z_up.trans.data(), {T, 3});
-  arrays["betas"] = NdArray::FromDoubles(motion.betas.data(), {motion.betas.size()});
+  const bool own = motion.body == "smpl" || motion.body == "smplh";
+  const Eigen::VectorXd betas = own ? motion.betas : Eigen::VectorXd::Zero(kAmassBetas);
+  MatrixX3d trans = z_up.trans;
+  if (!own) {
+    trans.rowwise() += (rest_pelvis - MeanPelvis("smpl")).transpose();
+    AddSourceBody(motion, &arrays);
+  }
+  arrays["trans"] = NdArray::FromDoubles(trans.data(), {T, 3});
+  arrays["betas"] = NdArray::FromDoubles(betas.data(), {betas.size()});
   arrays["gender"] = NdArray::FromString(gender);
   arrays["mocap_framerate"] = NdArray::FromDouble(RateForReaders(motion));
   arrays["timestamps"] = NdArray::FromDoubles(motion.timestamps.data(), {T});
@@ -152,13 +165,16 @@ void WriteAmassSmplx(const std::string& path, const Motion& motion, const Eigen:
     if (columns == kSmplhColumns) poses.rightCols(kHandColumns) = z_up.poses.rightCols(kHandColumns);
   }
   const bool own = columns == kSmplxColumns;
-  Eigen::VectorXd betas = Eigen::VectorXd::Zero(kSmplxBetas);
+  Eigen::VectorXd betas = Eigen::VectorXd::Zero(kAmassBetas);
   if (own)
-    betas.head(std::min<Eigen::Index>(kSmplxBetas, motion.betas.size())) =
-        motion.betas.head(std::min<Eigen::Index>(kSmplxBetas, motion.betas.size()));
+    betas.head(std::min<Eigen::Index>(kAmassBetas, motion.betas.size())) =
+        motion.betas.head(std::min<Eigen::Index>(kAmassBetas, motion.betas.size()));
   MatrixX3d trans = z_up.trans;
-  if (!own) trans.rowwise() += (rest_pelvis - MeanPelvis("smplx")).transpose();
   NpzArrays arrays;
+  if (!own) {
+    trans.rowwise() += (rest_pelvis - MeanPelvis("smplx")).transpose();
+    AddSourceBody(motion, &arrays);
+  }
   const auto add = [&](const char* key, Eigen::Index first, Eigen::Index count) {
     const RowMatrixXd part = poses.middleCols(first, count);
     arrays[key] = NdArray::FromDoubles(part.data(), {T, count});
@@ -170,8 +186,8 @@ void WriteAmassSmplx(const std::string& path, const Motion& motion, const Eigen:
   add("pose_eye", kBodyColumns + 3, 6);
   add("pose_hand", kSmplxColumns - kHandColumns, kHandColumns);
   arrays["trans"] = NdArray::FromDoubles(trans.data(), {T, 3});
-  arrays["betas"] = NdArray::FromDoubles(betas.data(), {kSmplxBetas});
-  const int32_t num_betas[] = {kSmplxBetas};
+  arrays["betas"] = NdArray::FromDoubles(betas.data(), {kAmassBetas});
+  const int32_t num_betas[] = {kAmassBetas};
   arrays["num_betas"] = NdArray::FromInts32(num_betas, {});
   arrays["gender"] = NdArray::FromString(gender);
   arrays["surface_model_type"] = NdArray::FromString("smplx");

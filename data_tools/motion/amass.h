@@ -21,7 +21,10 @@ bool IsAmass(const NpzArrays& arrays);
 Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where);
 
 /// Writes the SMPL-H form (156 columns, z up) of a 24- or 52-joint motion; `rest_pelvis` is the body's pelvis joint at
-/// rest, about which the root turns. `timestamps` are written too. Throws std::invalid_argument for an invalid motion.
+/// rest, about which the root turns. `timestamps` are written too. `betas` are the motion's if its body is SMPL or
+/// SMPL-H, which share them; otherwise 16 zeros, with `trans` set for the same pelvis on the mean neutral shape, and
+/// the body's own name and shape are in `source_body` and `source_betas`. Throws std::invalid_argument for an invalid
+/// motion.
 void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
                 const std::string& gender = "neutral");
 
@@ -29,7 +32,8 @@ void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vect
 /// and the same in parts (`root_orient`, `pose_body` T×63, `pose_jaw`, `pose_eye`, `pose_hand` T×90), `trans`, 16
 /// `betas`, `gender` text, `surface_model_type` 'smplx', the frame rate under both spellings; z up. Motions of 24, 52
 /// or 55 joints; SMPL's two hand joints are left out. `betas` are the motion's if its body is SMPL-X, otherwise 0, with
-/// `trans` set for the same pelvis on SMPL-X's mean neutral shape. Throws as WriteAmass().
+/// `trans` set for the same pelvis on SMPL-X's mean neutral shape, and `source_body` and `source_betas`. Throws as
+/// WriteAmass().
 void WriteAmassSmplx(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
                      const std::string& gender = "neutral");
 

@@ -18,8 +18,8 @@
 ///                          frame + t
 ///   world_source           source: 'ground', 'several people', 'vertical', 'given', 'level camera assumed'
 ///   world_sigma            [degrees of the vertical, metres of the ground's height]: standard deviations, NaN: unknown
-///   video_turn_deg         degrees by which the video's frames are turned clockwise to be seen by the camera: 90, 180 or
-///                          270; only if turned
+///   video_turn_deg         degrees by which the video's frames are turned clockwise to be seen by the camera, 90, 180
+///                          or 270; only if turned
 ///   video_slowdown         seconds of the video per second of `timestamps`; only if not 1
 /// Files without the world members have no world frame. If only world_from_camera exists, its source is 'given'. There
 /// is no `camera` member for a pinhole camera: K and trans suffice.

@@ -99,6 +99,13 @@ KeypointSequence CutFrames(KeypointSequence keypoints, int first, int last) {
   return keypoints;
 }
 
+DenseSequence CutFrames(DenseSequence dense, int first, int last) {
+  CheckSpan(first, last, dense.num_frames());
+  Cut(first, last, 1, &dense.frames);
+  Cut(first, last, 1, &dense.timestamps);
+  return dense;
+}
+
 PartLabelSequence CutFrames(PartLabelSequence labels, int first, int last) {
   CheckSpan(first, last, labels.num_frames());
   Cut(first, last, 1, &labels.frames);

@@ -34,6 +34,7 @@ FrameGrid MakeFrameGrid(const std::vector<int64_t>& numbers, double fps, const s
 /// Frames [first, last], both included, with their original timestamps. Throws std::invalid_argument for frames out of
 /// range.
 KeypointSequence CutFrames(KeypointSequence keypoints, int first, int last);
+DenseSequence CutFrames(DenseSequence dense, int first, int last);
 PartLabelSequence CutFrames(PartLabelSequence labels, int first, int last);
 
 }  // namespace bodyloom

@@ -188,7 +188,9 @@ KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, co
 
 /// Applies the caller's options and the checks common to all formats.
 KeypointSequence Finish(KeypointSequence sequence, const std::string& path, const LoadDetectionsOptions& options) {
-  if (options.image_width > 0) {
+  const bool has_other_size = options.other_width > 0 && sequence.image_width == options.other_width &&
+                              sequence.image_height == options.other_height;
+  if (options.image_width > 0 && !has_other_size) {
     if (sequence.image_width > 0 &&
         (sequence.image_width != options.image_width || sequence.image_height != options.image_height)) {
       throw std::runtime_error(path + ": made on images of " + std::to_string(sequence.image_width) + "x" +

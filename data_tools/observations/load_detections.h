@@ -20,8 +20,9 @@ struct LoadDetectionsOptions {
   double fps = 0;       ///< frame rate of files without one; 0: 30, or 60 for AIST++
   int image_width = 0;  ///< when known; checked against the detections, and needed for normalised coordinates
   int image_height = 0;
-  double min_confidence = 0;  ///< landmarks below this count as missing
-  std::string convention;     ///< OpenPose model; empty: detected (openpose_reader.h)
+  int other_width = 0, other_height = 0;  ///< another size that detections may state, and then keep; 0: none
+  double min_confidence = 0;              ///< landmarks below this count as missing
+  std::string convention;                 ///< OpenPose model; empty: detected (openpose_reader.h)
 };
 
 /// Throws std::runtime_error in one line: what was found, what was expected, what to do; std::invalid_argument for

@@ -60,6 +60,27 @@ bool FrameDecoder::Feed() {
 }
 
 bool FrameDecoder::Next() {
+  for (;;) {
+    if (deinterlacer_ && deinterlacer_->Pull(frame_.get())) {
+      time_s_ = times_in_deinterlacer_.front();
+      times_in_deinterlacer_.pop_front();
+      return true;
+    }
+    if (Decode()) {
+      if (!deinterlacer_ && !frame_->interlaced_frame) return true;
+      if (!deinterlacer_) deinterlacer_.emplace(packets_.path(), *frame_);
+      times_in_deinterlacer_.push_back(time_s_);
+      deinterlacer_->Push(frame_.get());
+    } else if (deinterlacer_ && !deinterlacer_draining_) {
+      deinterlacer_draining_ = true;
+      deinterlacer_->Push(nullptr);
+    } else {
+      return false;
+    }
+  }
+}
+
+bool FrameDecoder::Decode() {
   constexpr int kPatience = 10'000;  // bounds failures of a decoder that takes no packet
   for (int failures = 0; failures < kPatience;) {
     const int result = avcodec_receive_frame(codec_.get(), frame_.get());

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 
+#include "data_tools/video/deinterlacer.h"
 #include "data_tools/video/libav_handles.h"
 #include "data_tools/video/video_packets.h"
 
@@ -31,7 +33,8 @@ class FrameClock {
   bool has_last_ = false;
 };
 
-/// Several frames are decoded at once, on as many threads as there are processors.
+/// Several frames are decoded at once, on as many threads as there are processors. Interlaced frames become whole
+/// pictures (Deinterlacer).
 class FrameDecoder {
  public:
   /// Throws as VideoPackets, and when there is no decoder.
@@ -39,26 +42,32 @@ class FrameDecoder {
 
   /// Decodes the next decodable frame; false at the end.
   bool Next();
-  /// The frame decoded last; its pixels are as the codec stores them.
+  /// The frame decoded last; its pixels are as the codec stores them, of an interlaced one those of its first field.
   [[nodiscard]] const AVFrame& frame() const { return *frame_; }
   /// Presentation time of that frame, seconds after the first one.
   [[nodiscard]] double time() const { return time_s_; }
   /// Number of frames so far that could not be decoded, and of decoded ones with damaged parts.
   [[nodiscard]] int num_lost() const { return lost_; }
   [[nodiscard]] int num_damaged() const { return damaged_; }
+  /// Returns true if there was an interlaced frame so far.
+  [[nodiscard]] bool is_interlaced() const { return deinterlacer_.has_value(); }
   [[nodiscard]] const VideoPackets& packets() const { return packets_; }
 
  private:
   bool Feed();
+  /// Decodes the next frame as stored, and its time; false at the end.
+  bool Decode();
 
   VideoPackets packets_;
   LibavPtr<AVCodecContext> codec_;
   LibavPtr<AVFrame> frame_;
   LibavPtr<AVPacket> packet_;
   FrameClock clock_;
+  std::optional<Deinterlacer> deinterlacer_;
+  std::deque<double> times_in_deinterlacer_;
   double time_s_ = 0;
   int lost_ = 0, damaged_ = 0;
-  bool draining_ = false;
+  bool draining_ = false, deinterlacer_draining_ = false;
 };
 
 /// The clock of a stream's frames.

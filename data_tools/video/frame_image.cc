@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/video/frame_image.h"
 
+#include <cmath>
 #include <cstdlib>
 
 extern "C" {
@@ -13,6 +14,7 @@ extern "C" {
 
 #include <opencv2/core.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "geometry/base/check.h"
 #include "render/image/image_mat.h"
@@ -66,13 +68,34 @@ void Interleave(const AVFrame& converted, cv::Mat* bgr) {
   }
 }
 
+void Flip(const DisplayOrientation& orientation, cv::Mat* image) {
+  if (!orientation.flip_columns && !orientation.flip_rows) return;
+  cv::flip(*image, *image, orientation.flip_columns && orientation.flip_rows ? -1 : orientation.flip_columns ? 1 : 0);
+}
+
 }  // namespace
 
-FrameImage::FrameImage(const std::string& path, const AVStream& stream)
-    : path_(path), orientation_(OrientationOf(DisplayMatrixOf(stream))), converted_(NewLibavFrame()) {}
+FrameImage::FrameImage(const std::string& path, const AVStream& stream, double pixel_aspect, int turn_deg)
+    : path_(path),
+      pixel_aspect_(pixel_aspect),
+      orientation_(Then(OrientationOf(DisplayMatrixOf(stream)), ClockwiseTurn(turn_deg))),
+      converted_(NewLibavFrame()) {
+  BODYLOOM_CHECK(pixel_aspect > 0, "FrameImage: pixels of ", pixel_aspect, " times their height, expected above 0");
+}
 
-int FrameImage::WidthOf(const AVFrame& frame) const { return orientation_.transpose ? frame.height : frame.width; }
-int FrameImage::HeightOf(const AVFrame& frame) const { return orientation_.transpose ? frame.width : frame.height; }
+FrameSize FrameImage::SquareSizeOf(const FrameSize& stored) const {
+  const auto enlarged = [](int length, double factor) { return static_cast<int>(std::lround(length * factor)); };
+  if (pixel_aspect_ >= 1) return {enlarged(stored.width, pixel_aspect_), stored.height};
+  return {stored.width, enlarged(stored.height, 1 / pixel_aspect_)};
+}
+
+FrameSize FrameImage::Oriented(const FrameSize& size) const {
+  return orientation_.transpose ? FrameSize{size.height, size.width} : size;
+}
+
+FrameSize FrameImage::SizeOf(const AVFrame& frame) const { return Oriented(SquareSizeOf({frame.width, frame.height})); }
+
+FrameSize FrameImage::StoredSizeOf(const AVFrame& frame) const { return Oriented({frame.width, frame.height}); }
 
 void FrameImage::Prepare(const Kind& kind) {
   const auto format = static_cast<AVPixelFormat>(kind.format);
@@ -86,10 +109,11 @@ void FrameImage::Prepare(const Kind& kind) {
   }
   SwsContext* scaler = scaler_.get();
   av_frame_unref(converted_.get());
-  av_opt_set_int(scaler, "srcw", kind.width, 0);
-  av_opt_set_int(scaler, "srch", kind.height, 0);
-  av_opt_set_int(scaler, "dstw", kind.width, 0);
-  av_opt_set_int(scaler, "dsth", kind.height, 0);
+  const FrameSize square = SquareSizeOf(kind.size);
+  av_opt_set_int(scaler, "srcw", kind.size.width, 0);
+  av_opt_set_int(scaler, "srch", kind.size.height, 0);
+  av_opt_set_int(scaler, "dstw", square.width, 0);
+  av_opt_set_int(scaler, "dsth", square.height, 0);
   av_opt_set_int(scaler, "src_format", format, 0);
   // From YUV to packed colours the library uses an approximation that is darker by 1 to 1.5 levels and repeats chroma,
   // or is slow; to planes it is fast and correct. RGB colours are only copied.
@@ -98,11 +122,11 @@ void FrameImage::Prepare(const Kind& kind) {
   av_opt_set_int(scaler, "dst_format", converted_->format, 0);
   av_opt_set_int(scaler, "sws_flags", SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, 0);
   SetChromaLocation(scaler, *description, kind.chroma_location);
-  converted_->width = kind.width;
-  converted_->height = kind.height;
+  converted_->width = square.width;
+  converted_->height = square.height;
   if (sws_init_context(scaler, nullptr, nullptr) < 0 || av_frame_get_buffer(converted_.get(), 0) < 0) {
-    throw std::runtime_error(Concatenate(path_, ": pixels of the format ", name, ", ", kind.width, "x", kind.height,
-                                         ", which cannot be converted"));
+    throw std::runtime_error(Concatenate(path_, ": pixels of the format ", name, ", ", kind.size.width, "x",
+                                         kind.size.height, ", which cannot be converted"));
   }
   constexpr int kOne = 1 << 16;
   sws_setColorspaceDetails(scaler, sws_getCoefficients(kind.colour_space), kind.full_range ? 1 : 0,
@@ -111,25 +135,53 @@ void FrameImage::Prepare(const Kind& kind) {
 }
 
 void FrameImage::Convert(const AVFrame& frame, Image* image) {
-  const Kind kind = {frame.width,      frame.height,          frame.format,
-                     frame.colorspace, frame.chroma_location, HasFullRange(frame)};
+  const Kind kind = {
+      {frame.width, frame.height}, frame.format, frame.colorspace, frame.chroma_location, HasFullRange(frame)};
   if (kind != kind_) Prepare(kind);
   sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, converted_->data, converted_->linesize);
-  const int width = WidthOf(frame), height = HeightOf(frame);
-  if (image->width != width || image->height != height) *image = Image(width, height);
+  const FrameSize size = SizeOf(frame);
+  if (image->width != size.width || image->height != size.height) *image = Image(size.width, size.height);
   cv::Mat shown = MatOf(image);
   if (orientation_.transpose) {
-    if (as_stored_.width != frame.width || as_stored_.height != frame.height)
-      as_stored_ = Image(frame.width, frame.height);
+    if (as_stored_.width != converted_->width || as_stored_.height != converted_->height)
+      as_stored_ = Image(converted_->width, converted_->height);
     cv::Mat stored = MatOf(&as_stored_);
     Interleave(*converted_, &stored);
     cv::transpose(stored, shown);
   } else {
     Interleave(*converted_, &shown);
   }
-  if (orientation_.flip_columns || orientation_.flip_rows) {
-    const int code = orientation_.flip_columns && orientation_.flip_rows ? -1 : orientation_.flip_columns ? 1 : 0;
-    cv::flip(shown, shown, code);
+  Flip(orientation_, &shown);
+}
+
+Image Oriented(Image image, const DisplayOrientation& orientation) {
+  if (orientation == DisplayOrientation()) return image;
+  Image oriented = orientation.transpose ? Image(image.height, image.width) : std::move(image);
+  cv::Mat shown = MatOf(&oriented);
+  if (orientation.transpose) cv::transpose(MatOf(&image), shown);
+  Flip(orientation, &shown);
+  return oriented;
+}
+
+DisplayOrientation Then(const DisplayOrientation& first, const DisplayOrientation& second) {
+  // A transposition exchanges the reversals before it.
+  const bool columns = second.transpose ? first.flip_rows : first.flip_columns;
+  const bool rows = second.transpose ? first.flip_columns : first.flip_rows;
+  return {first.transpose != second.transpose, columns != second.flip_columns, rows != second.flip_rows};
+}
+
+DisplayOrientation ClockwiseTurn(int degrees) {
+  switch (degrees) {
+    case 0:
+      return {};
+    case 90:
+      return {true, true, false};
+    case 180:
+      return {false, true, true};
+    case 270:
+      return {true, false, true};
+    default:
+      throw std::invalid_argument(Concatenate("a turn by ", degrees, " degrees, expected 0, 90, 180 or 270"));
   }
 }
 

@@ -19,6 +19,15 @@ struct DisplayOrientation {
   bool operator==(const DisplayOrientation&) const = default;
 };
 
+/// Two orientations applied one after the other.
+DisplayOrientation Then(const DisplayOrientation& first, const DisplayOrientation& second);
+
+/// Clockwise turn by 0, 90, 180 or 270 degrees. Throws std::invalid_argument for another angle.
+DisplayOrientation ClockwiseTurn(int degrees);
+
+/// The image in that orientation.
+Image Oriented(Image image, const DisplayOrientation& orientation);
+
 /// The orientation nearest to a matrix {a b u, c d v, x y w} by rows, which maps column p and row q of the stored image
 /// to column a·p + c·q + x and row b·p + d·q + y of the displayed one. Null: as stored.
 DisplayOrientation OrientationOf(const int32_t* matrix);
@@ -29,14 +38,22 @@ struct AVStream;
 
 namespace bodyloom {
 
+struct FrameSize {
+  int width = 0, height = 0;
+  bool operator==(const FrameSize&) const = default;
+};
+
 class FrameImage {
  public:
-  /// `path` is for messages.
-  FrameImage(const std::string& path, const AVStream& stream);
+  /// `path` is for messages. `pixel_aspect`: width of a stored pixel divided by its height, above 0; where it is not 1,
+  /// the images have square pixels: the shorter side of the stored ones is enlarged (bilinear), so that no detail is
+  /// lost. `turn_deg`: a further clockwise turn of the images as displayed.
+  FrameImage(const std::string& path, const AVStream& stream, double pixel_aspect = 1, int turn_deg = 0);
 
-  /// Display size of a frame.
-  [[nodiscard]] int WidthOf(const AVFrame& frame) const;
-  [[nodiscard]] int HeightOf(const AVFrame& frame) const;
+  /// Size of a frame's image.
+  [[nodiscard]] FrameSize SizeOf(const AVFrame& frame) const;
+  /// The same before the pixels are made square: as programs see it that take stored pixels for square ones.
+  [[nodiscard]] FrameSize StoredSizeOf(const AVFrame& frame) const;
 
   /// Converts any depth and subsampling to eight bits, rounded to the nearest; chroma is interpolated from the frame's
   /// sample positions. Defaults are BT.601, limited range and chroma at the left (ffmpeg's convention). Transparency is
@@ -46,13 +63,18 @@ class FrameImage {
  private:
   /// Parameters of a prepared conversion.
   struct Kind {
-    int width = 0, height = 0, format = -1, colour_space = -1, chroma_location = -1;
+    FrameSize size;
+    int format = -1, colour_space = -1, chroma_location = -1;
     bool full_range = false;
     bool operator==(const Kind&) const = default;
   };
   void Prepare(const Kind& kind);
+  /// Size with square pixels, not oriented.
+  [[nodiscard]] FrameSize SquareSizeOf(const FrameSize& stored) const;
+  [[nodiscard]] FrameSize Oriented(const FrameSize& size) const;
 
   std::string path_;
+  double pixel_aspect_;
   DisplayOrientation orientation_;
   Kind kind_;
   LibavPtr<SwsContext> scaler_;

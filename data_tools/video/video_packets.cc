@@ -149,6 +149,15 @@ void VideoPackets::NoteEnd(const AVPacket& packet) {
 
 const AVStream& VideoPackets::stream() const { return *stream_; }
 
+double VideoPackets::PixelAspect(const AVFrame& first) const {
+  constexpr double kMaxRatio = 5, kRounding = 0.005;
+  const AVRational ratio =
+      av_guess_sample_aspect_ratio(context_.get(), stream_, const_cast<AVFrame*>(&first));  // only read
+  if (ratio.num <= 0 || ratio.den <= 0) return 1;
+  const double aspect = av_q2d(ratio);
+  return aspect > kMaxRatio || aspect < 1 / kMaxRatio || std::abs(aspect - 1) <= kRounding ? 1 : aspect;
+}
+
 double VideoPackets::focal_35mm_mm() const {
   constexpr const char* kKey = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
   for (const AVDictionary* notes : {stream_->metadata, context_->metadata}) {

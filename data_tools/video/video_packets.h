@@ -24,6 +24,9 @@ class VideoPackets {
   [[nodiscard]] const AVStream& stream() const;
   /// Frames per second: the nominal rate if the frames keep it, else the mean rate; 0 if unknown.
   [[nodiscard]] double fps() const;
+  /// Width of a stored pixel divided by its height, by the container, else by the first frame; 1 if neither tells, or
+  /// if they tell a ratio beyond 5, which no camera has, or within 0.5 % of 1, which is the rounding of a scaled size.
+  [[nodiscard]] double PixelAspect(const AVFrame& first) const;
   /// VideoInfo::focal_35mm_mm, of the file or of its video stream.
   [[nodiscard]] double focal_35mm_mm() const;
   /// Number of displayed frames by the container; 0 if unknown.

@@ -12,6 +12,7 @@
 #include "data_tools/video/frame_decoder.h"
 #include "data_tools/video/frame_image.h"
 #include "data_tools/video/image_file.h"
+#include "data_tools/video/image_header.h"
 #include "data_tools/video/jpeg_header.h"
 #include "geometry/base/check.h"
 
@@ -25,6 +26,7 @@ class VideoReader::Source {
   virtual int SkipTo(double seconds) = 0;
   [[nodiscard]] virtual double frame_time() const = 0;
   [[nodiscard]] virtual std::string warning() const = 0;
+  [[nodiscard]] virtual std::string note() const = 0;
   [[nodiscard]] const VideoInfo& info() const { return info_; }
   [[nodiscard]] int next_frame() const { return next_; }
 
@@ -41,12 +43,13 @@ class VideoReader::Source {
 
 class VideoReader::ImagesSource : public Source {
  public:
-  ImagesSource(const std::string& path, std::vector<std::string> files) : path_(path), files_(std::move(files)) {
+  ImagesSource(const std::string& path, std::vector<std::string> files, int turn_deg)
+      : path_(path), files_(std::move(files)), turn_(ClockwiseTurn(turn_deg)) {
     const std::string bytes = ReadImageBytes(files_[0]);
-    first_ = DecodeImage(bytes, files_[0]);
+    first_ = Oriented(DecodeImage(bytes, files_[0]), turn_);
     if (const std::optional<JpegHeader> jpeg = ReadJpegHeader(bytes)) info_.focal_35mm_mm = jpeg->focal_35mm_mm;
-    info_.width = first_.width;
-    info_.height = first_.height;
+    info_.width = info_.stored_width = first_.width;
+    info_.height = info_.stored_height = first_.height;
     info_.num_frames = static_cast<int>(files_.size());
   }
 
@@ -56,7 +59,7 @@ class VideoReader::ImagesSource : public Source {
       *frame = std::move(first_);
       first_ = Image();
     } else {
-      *frame = ReadImage(files_[next_]);
+      *frame = Oriented(ReadImage(files_[next_]), turn_);
       RequireSize(files_[next_], frame->width, frame->height);
     }
     ++next_;
@@ -76,21 +79,31 @@ class VideoReader::ImagesSource : public Source {
 
   [[nodiscard]] double frame_time() const override { return std::numeric_limits<double>::quiet_NaN(); }
   [[nodiscard]] std::string warning() const override { return ""; }
+  [[nodiscard]] std::string note() const override { return ""; }
 
  private:
   std::string path_;
   std::vector<std::string> files_;
+  DisplayOrientation turn_;
   Image first_;  ///< read on opening to learn the size
 };
 
 class VideoReader::FileSource : public Source {
  public:
-  explicit FileSource(const std::string& path)
-      : path_(path), decoder_(path), converter_(path, decoder_.packets().stream()) {
+  FileSource(const std::string& path, int turn_deg) : path_(path), decoder_(path) {
     if (!Peek()) throw std::runtime_error(path + ": the video holds no frame that can be decoded");
-    converter_.Convert(decoder_.frame(), &first_);
-    info_.width = first_.width;
-    info_.height = first_.height;
+    const VideoPackets& packets = decoder_.packets();
+    converter_ = std::make_unique<FrameImage>(path, packets.stream(), packets.PixelAspect(decoder_.frame()), turn_deg);
+    const FrameSize square = converter_->SizeOf(decoder_.frame()), stored = converter_->StoredSizeOf(decoder_.frame());
+    if (int64_t{square.width} * square.height > kMaxImagePixels) {
+      throw std::runtime_error(Concatenate(path, ": a video of ", square.width, "x", square.height,
+                                           " square pixels, expected at most ", kMaxImagePixels, "; scale it down"));
+    }
+    converter_->Convert(decoder_.frame(), &first_);
+    info_.width = square.width;
+    info_.height = square.height;
+    info_.stored_width = stored.width;
+    info_.stored_height = stored.height;
     info_.fps = decoder_.packets().fps();
     info_.focal_35mm_mm = decoder_.packets().focal_35mm_mm();
     info_.num_frames = decoder_.packets().num_frames();
@@ -99,11 +112,12 @@ class VideoReader::FileSource : public Source {
   bool Read(Image* frame) override {
     if (!Peek()) return false;
     const AVFrame& decoded = decoder_.frame();
-    RequireSize(Concatenate(path_, ": frame ", next_), converter_.WidthOf(decoded), converter_.HeightOf(decoded));
+    const FrameSize size = converter_->SizeOf(decoded);
+    RequireSize(Concatenate(path_, ": frame ", next_), size.width, size.height);
     if (!first_.empty()) {
       *frame = std::move(first_);
     } else {
-      converter_.Convert(decoded, frame);
+      converter_->Convert(decoded, frame);
     }
     Pass();
     return true;
@@ -134,6 +148,16 @@ class VideoReader::FileSource : public Source {
     return what.empty() ? "" : path_ + ": " + what;
   }
 
+  [[nodiscard]] std::string note() const override {
+    std::string what;
+    if (decoder_.is_interlaced()) what = "interlaced, each frame is made of its first field";
+    if (info_.IsAnamorphic()) {
+      what += Concatenate(what.empty() ? "" : "; ", "its pixels are not square: frames of ", info_.stored_width, "x",
+                          info_.stored_height, " are shown as ", info_.width, "x", info_.height);
+    }
+    return what.empty() ? "" : path_ + ": " + what;
+  }
+
  private:
   /// Decodes the next frame; returns false if there is none.
   bool Peek() {
@@ -153,21 +177,21 @@ class VideoReader::FileSource : public Source {
 
   std::string path_;
   FrameDecoder decoder_;
-  FrameImage converter_;
+  std::unique_ptr<FrameImage> converter_;
   Image first_;  ///< converted on opening, so that unsupported formats are refused there
   bool has_frame_ = false, ended_ = false;
   double time_s_ = 0;
 };
 
-VideoReader::VideoReader(const std::string& path) {
+VideoReader::VideoReader(const std::string& path, int turn_deg) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
-    source_ = std::make_unique<ImagesSource>(path, ImageFilesOf(path));
+    source_ = std::make_unique<ImagesSource>(path, ImageFilesOf(path), turn_deg);
   } else if (IsImageName(path) && std::filesystem::is_regular_file(path, error)) {
     // ReadImage orients photos by their EXIF.
-    source_ = std::make_unique<ImagesSource>(path, std::vector<std::string>{path});
+    source_ = std::make_unique<ImagesSource>(path, std::vector<std::string>{path}, turn_deg);
   } else {
-    source_ = std::make_unique<FileSource>(path);
+    source_ = std::make_unique<FileSource>(path, turn_deg);
   }
 }
 VideoReader::~VideoReader() = default;
@@ -178,5 +202,6 @@ int VideoReader::SkipTo(double seconds) { return source_->SkipTo(seconds); }
 int VideoReader::next_frame() const { return source_->next_frame(); }
 double VideoReader::frame_time() const { return source_->frame_time(); }
 std::string VideoReader::warning() const { return source_->warning(); }
+std::string VideoReader::note() const { return source_->note(); }
 
 }  // namespace bodyloom

@@ -16,6 +16,7 @@ Track TrackSeenBy(const RigCamera& camera, const BodyModel& body, const Track& t
   still.camera_from_scene.assign(static_cast<size_t>(track.num_frames()), pose);
   Track seen = TrackInCameras(body, still);
   seen.camera = camera.camera;
+  seen.playback = {};
   if (camera.HasClock()) {
     for (double& time : seen.motion.timestamps) time = camera.TimeAt(time);
   }

@@ -33,8 +33,8 @@ struct RigCamera {
 };
 
 /// The track of a rig's first camera as another one sees it: in the frame of that camera and by its clock, with its
-/// intrinsics; the same if it has no clock. The world stays where it is. Throws std::invalid_argument for a moving
-/// camera.
+/// intrinsics; the same if it has no clock. The world stays where it is; `playback` is not known of its video. Throws
+/// std::invalid_argument for a moving camera.
 Track TrackSeenBy(const RigCamera& camera, const BodyModel& body, const Track& track);
 
 }  // namespace bodyloom

@@ -16,6 +16,7 @@
 #include "geometry/base/percentile.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/detect/cut_masks.h"
+#include "pipelines/detect/find_turn.h"
 #include "pipelines/files.h"
 #include "pipelines/report_json.h"
 #include "pipelines/report_text.h"
@@ -139,8 +140,10 @@ std::vector<FoundPerson> FoundPeople(const PeopleSequence& people, const std::ve
   return found;
 }
 
-DetectClipReport DetectClip(const DetectClipRequest& request, const PipelineCallbacks& callbacks) {
-  CheckFiles(request);
+DetectClipReport DetectClip(const DetectClipRequest& given_request, const PipelineCallbacks& callbacks) {
+  CheckFiles(given_request);
+  DetectClipRequest request = given_request;
+  if (request.find_turn) request.detect.span.turn_deg = FindTurn(request.detect, callbacks);
   const bool wants_dense = !request.dense.empty();
   BODYLOOM_CHECK(!wants_dense || request.dense_detector, "DetectClip: dense keypoints without a detector");
   DetectClipReport report;

@@ -14,6 +14,7 @@
 namespace bodyloom {
 
 struct DetectClipRequest {
+  bool find_turn = false;        ///< detect.span.turn_deg is FindTurn()
   DetectPeopleRequest detect;    ///< detector.blazepose.masks follows from `mask`
   std::string out;               ///< everybody's landmarks, .npz (people_npz.h); empty: none
   std::string mask;              ///< one person's mask, .npz (part_labels.h); empty: none

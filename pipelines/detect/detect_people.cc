@@ -12,6 +12,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/prefetcher.h"
 #include "pipelines/files.h"
+#include "pipelines/video/track_video.h"
 #include "tracking/detection/people_between.h"
 
 namespace bodyloom {
@@ -133,12 +134,15 @@ void RequirePoseModels(const FrameDetectorOptions& detector) {
   RequireReadable(detector.box_model, "box model");
 }
 
-DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks) {
+namespace {
+
+DetectedClip DetectOnce(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks) {
   if (!(request.detect_rate >= 0)) {
     throw RequestError(Concatenate("frames to detect a second: ", request.detect_rate, ", expected a positive number"));
   }
   FrameSource source(request.video, request.span);
   DetectedClip clip;
+  clip.video = source.info();
   clip.people.image_width = source.info().width;
   clip.people.image_height = source.info().height;
   const int num_frames = source.num_frames();
@@ -156,8 +160,28 @@ DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCall
   }
   detector.Finish();
   // The video's end has been taken, so the other thread reads no more of it.
-  if (const std::string warning = source.warning(); !warning.empty()) callbacks.Message(warning);
+  for (const std::string& text : {source.note(), source.warning()}) {
+    if (!text.empty()) callbacks.Message(text);
+  }
   return clip;
+}
+
+bool ShowsNobody(const PeopleSequence& people) {
+  return std::all_of(people.frames.begin(), people.frames.end(), [](const auto& frame) { return frame.empty(); });
+}
+
+}  // namespace
+
+DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks) {
+  constexpr int kFinestTiles = 8;
+  DetectedClip clip = DetectOnce(request, callbacks);
+  const bool can_search_finer =
+      request.detector.pose_model.empty() && request.detector.blazepose.tile_levels < kFinestTiles;
+  if (!ShowsNobody(clip.people) || !can_search_finer) return clip;
+  callbacks.Message(request.video + ": nobody was found, looking for smaller people");
+  DetectPeopleRequest finer = request;
+  finer.detector.blazepose.tile_levels = kFinestTiles;
+  return DetectOnce(finer, callbacks);
 }
 
 PartLabelSequence MaskOfPerson(const DetectedClip& clip, const PersonTrack& person) {
@@ -189,30 +213,34 @@ void CheckSpan(const FrameSpan& span) {
 }  // namespace
 
 FrameSource::FrameSource(const std::string& video, const FrameSpan& span)
-    : reader_(video),
+    : reader_(video, span.turn_deg),
       has_clock_(!std::isnan(reader_.frame_time())),
+      playback_(PlaybackOf(reader_.info(), span.turn_deg, span.captured_fps, span.fps)),
       to_s_(span.to_s),
-      fps_(info().fps > 0 ? info().fps
-           : span.fps > 0 ? span.fps
-                          : kUsualFps) {
+      fps_((info().fps > 0 ? info().fps
+            : span.fps > 0 ? span.fps
+                           : kUsualFps) *
+           playback_.slowdown) {
   CheckSpan(span);
   if (span.from_s > 0) {
-    has_clock_ ? reader_.SkipTo(span.from_s) : reader_.Skip(int(std::ceil(span.from_s * fps_ - kSameTime)));
+    const double played_fps = fps_ / playback_.slowdown;
+    has_clock_ ? reader_.SkipTo(span.from_s) : reader_.Skip(int(std::ceil(span.from_s * played_fps - kSameTime)));
   }
   first_ = reader_.next_frame();
 }
 
 int FrameSource::num_frames() const {
   if (info().num_frames <= 0) return 0;
-  const double end = to_s_ < 0 ? info().num_frames : std::min<double>(info().num_frames, to_s_ * fps_ + 1);
+  const double end =
+      to_s_ < 0 ? info().num_frames : std::min<double>(info().num_frames, to_s_ * fps_ / playback_.slowdown + 1);
   return std::max(1, int(end) - first_);
 }
 
 bool FrameSource::Read(Image* frame, double* time_s) {
   at_end_ = at_end_ || !reader_.Read(frame);
   if (at_end_) return false;
-  *time_s = has_clock_ ? reader_.frame_time() : (reader_.next_frame() - 1) / fps_;
-  at_end_ = to_s_ >= 0 && *time_s > to_s_ + kSameTime;
+  *time_s = has_clock_ ? reader_.frame_time() / playback_.slowdown : (reader_.next_frame() - 1) / fps_;
+  at_end_ = to_s_ >= 0 && *time_s * playback_.slowdown > to_s_ + kSameTime;
   return !at_end_;
 }
 

@@ -9,6 +9,7 @@
 #include "data_tools/video/video_reader.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/scene/observations.h"
+#include "geometry/scene/track.h"
 #include "render/image/image.h"
 #include "tracking/detection/frame_detector.h"
 #include "tracking/detection/line_segments.h"
@@ -19,7 +20,9 @@ namespace bodyloom {
 
 struct FrameSpan {
   double fps = 0;                ///< for a folder of images or a video without a rate; 0: 30
-  double from_s = 0, to_s = -1;  ///< seconds from the first frame, both included; to_s < 0: to the end
+  double from_s = 0, to_s = -1;  ///< seconds of the video from its first frame, both included; to_s < 0: to the end
+  int turn_deg = 0;              ///< frames are turned clockwise by 0, 90, 180 or 270 degrees
+  double captured_fps = 0;       ///< rate at which slow motion was filmed, which times then follow; 0: as it is played
 };
 
 class FrameSource {
@@ -30,18 +33,22 @@ class FrameSource {
   [[nodiscard]] const VideoInfo& info() const { return reader_.info(); }
   /// Approximate number of frames; 0 if the video's length is unknown.
   [[nodiscard]] int num_frames() const;
-  /// Frame rate: the video's, else the span's, else 30.
+  /// Frame rate: that of the capture, else the video's, else the span's, else 30.
   [[nodiscard]] double fps() const { return fps_; }
+  [[nodiscard]] const VideoPlayback& playback() const { return playback_; }
   /// Reads the next frame; returns false at the end. May be called by any one thread at a time.
   bool Read(Image* frame, double* time_s);
   /// Warning about the video; must not be called while another thread reads.
   [[nodiscard]] std::string warning() const { return reader_.warning(); }
+  /// Changes made to the frames (VideoReader::note()); the same.
+  [[nodiscard]] std::string note() const { return reader_.note(); }
 
  private:
   VideoReader reader_;
   bool has_clock_;  ///< false for a folder of images
   bool at_end_ = false;
-  double to_s_, fps_;
+  VideoPlayback playback_;
+  double to_s_, fps_;  ///< to_s_ on the video's clock
   int first_ = 0;
 };
 
@@ -56,6 +63,7 @@ struct DetectPeopleRequest {
 };
 
 struct DetectedClip {
+  VideoInfo video;                               ///< of the turned frames
   PeopleSequence people;                         ///< the detector's convention; identities −1
   std::vector<std::vector<PackedLabels>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
   PeopleDetectorSummary detector;
@@ -65,8 +73,9 @@ struct DetectedClip {
 /// Throws RequestError when the detector's ONNX files contradict each other or are missing.
 void RequirePoseModels(const FrameDetectorOptions& detector);
 
-/// Detects people in all frames. Throws std::runtime_error naming a file that cannot be used, RequestError for an empty
-/// span, Cancelled.
+/// Detects people in all frames. If BlazePose finds nobody in any of them, it searches once more in its finest squares
+/// (PeopleDetectorOptions::tile_levels 8), which shows people of 1/28 of the longer side. Throws std::runtime_error
+/// naming a file that cannot be used, RequestError for an empty span, Cancelled.
 DetectedClip DetectPeople(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks = {});
 
 /// Mask of one of the clip's people (PersonOf()); empty in frames without that person. Throws std::invalid_argument

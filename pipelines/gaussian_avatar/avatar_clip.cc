@@ -32,6 +32,11 @@ AvatarClip::AvatarClip(const AvatarClipRequest& request) : request_(request), bo
   } else {
     OpenVideo();
   }
+  camera_of_file_ = track_.camera;
+  if (track_.camera.HasDistortion()) {
+    lens_.emplace(track_.camera);
+    track_.camera = lens_->ideal();
+  }
   const std::string& tracked = request.track.empty() ? request.data : request.track;
   try {
     posed_ = std::make_unique<PosedAvatar>(*body_, track_, std::vector<double>(), 1, request.threads, tracked);
@@ -48,7 +53,7 @@ void AvatarClip::OpenVideo() {
   track_ = ReadTrack(request_.track);
   mask_ = ReadPartLabels(request_.mask);
   CheckSize(request_.mask, mask_->num_frames(), mask_->image_width, mask_->image_height);
-  const VideoReader video(request_.data);
+  const VideoReader video(request_.data, track_.playback.turn_deg);
   const VideoInfo& info = video.info();
   CheckSize(request_.data, info.num_frames > 0 ? info.num_frames : track_.num_frames(), info.width, info.height);
 }
@@ -72,10 +77,18 @@ void AvatarClip::CheckSize(const std::string& file, int num_frames, int width, i
   }
 }
 
-TrainingView AvatarClip::CutView(int t, const Image& image, const PersonAt& person_at, int margin,
+uint8_t AvatarClip::PersonOf(const PersonAt& person_in_file, int x, int y) const {
+  if (!lens_) return person_in_file(x, y);
+  const std::optional<ImagePixel> source = lens_->SourceOf(x, y);
+  return source ? person_in_file(source->x, source->y) : 0;
+}
+
+TrainingView AvatarClip::CutView(int t, const Image& image, const PersonAt& person_in_file, int margin,
                                  bool with_body) const {
   const PixelBox body = with_body ? posed_->BoxAt(t, 0) : PixelBox();
-  TrainingView view = CutTrainingView(image, person_at, posed_->BoxAt(t, kSearchShare), body, margin);
+  const auto person_at = [&](int x, int y) { return PersonOf(person_in_file, x, y); };
+  TrainingView view =
+      CutTrainingView(lens_ ? lens_->Corrected(image) : image, person_at, posed_->BoxAt(t, kSearchShare), body, margin);
   if (view.window.empty()) return view;
   view.time = t;
   view.camera = posed_->CameraAt(t);
@@ -93,11 +106,12 @@ LabelImage AvatarClip::MaskAt(int t) const {
   PersonFrame frame;
   if (set_) frame = set_->Read(t, {true, false, false, false});
   const LabelImage parts = set_ ? LabelImage() : mask_->PartsOf(t);
+  const auto in_file = [&](int x, int y) {
+    const bool is_person = set_ ? frame.labels.pixel(x, y)[0] != 0 : parts.At(x, y) != PartLabelSequence::kBackground;
+    return is_person ? 1 : 0;
+  };
   for (int y = box.y_begin; y < box.y_end; ++y) {
-    for (int x = box.x_begin; x < box.x_end; ++x) {
-      const bool is_person = set_ ? frame.labels.pixel(x, y)[0] != 0 : parts.At(x, y) != PartLabelSequence::kBackground;
-      mask.labels.push_back(is_person ? 1 : 0);
-    }
+    for (int x = box.x_begin; x < box.x_end; ++x) mask.labels.push_back(PersonOf(in_file, x, y));
   }
   return mask;
 }
@@ -119,7 +133,7 @@ std::vector<TrainingView> AvatarClip::ReadViews(const std::vector<int>& frames, 
     }
     return views;
   }
-  VideoReader video(request_.data);
+  VideoReader video(request_.data, track_.playback.turn_deg);
   Image image;
   for (size_t k = 0; k < frames.size(); ++k) {
     const int t = frames[k];

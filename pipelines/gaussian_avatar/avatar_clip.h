@@ -15,6 +15,7 @@
 #include "geometry/scene/track.h"
 #include "render/gaussian_avatar/learning/training_view.h"
 #include "render/gaussian_avatar/posed_avatar.h"
+#include "render/image/lens_correction.h"
 
 namespace bodyloom {
 
@@ -33,7 +34,10 @@ class AvatarClip {
   explicit AvatarClip(const AvatarClipRequest& request);
 
   [[nodiscard]] const BodyModel& body() const { return *body_; }
+  /// Its camera has no distortion: images of a lens that distorts are corrected as they are read (LensCorrection).
   [[nodiscard]] const Track& track() const { return track_; }
+  /// The camera of the track's file.
+  [[nodiscard]] const Camera& camera_of_file() const { return camera_of_file_; }
   [[nodiscard]] const PosedAvatar& posed() const { return *posed_; }
 
   /// Mask of the person near the tracked body, in a frame with a result. Throws std::runtime_error when it cannot be
@@ -53,7 +57,9 @@ class AvatarClip {
  private:
   void OpenVideo();
   void CheckSize(const std::string& file, int num_frames, int width, int height) const;
-  [[nodiscard]] TrainingView CutView(int t, const Image& image, const PersonAt& person_at, int margin,
+  /// Value at the pixel of the file's image that pixel (x, y) of the corrected one shows; 0 where there is none.
+  [[nodiscard]] uint8_t PersonOf(const PersonAt& person_in_file, int x, int y) const;
+  [[nodiscard]] TrainingView CutView(int t, const Image& image, const PersonAt& person_in_file, int margin,
                                      bool with_body) const;
 
   AvatarClipRequest request_;
@@ -61,6 +67,8 @@ class AvatarClip {
   std::optional<SinglePersonDataset> set_;
   std::optional<PartLabelSequence> mask_;
   Track track_;
+  Camera camera_of_file_;
+  std::optional<LensCorrection> lens_;  ///< where the lens distorts
   std::unique_ptr<PosedAvatar> posed_;
   std::vector<GarmentBones> other_runs_;
 };

@@ -24,6 +24,7 @@ ShownAvatar::ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int nu
                       ": learned a network of the motion, which this version no longer has; shown without it");
   }
   track_ = std::move(motion.track);
+  track_.camera.distortion = {};
   try {
     Pose(motion, callbacks);
   } catch (const RequestError&) {

@@ -281,7 +281,9 @@ class AvatarTraining {
     if (!split_.validation.empty()) {
       summary_.validation_refined = ScoreOf(split_.validation, state.poses, "preview_refined.png");
     }
-    WriteTrack(request_.refined_track, RefinedTrack(clip_->body(), clip_->track(), *refiner_, state.poses));
+    Track refined = RefinedTrack(clip_->body(), clip_->track(), *refiner_, state.poses);
+    refined.camera = clip_->camera_of_file();
+    WriteTrack(request_.refined_track, refined);
   }
 
   AvatarScores ScoreOf(const std::vector<int>& frames, const PoseCorrections& poses, const char* preview) {

@@ -184,7 +184,9 @@ ClipPageView ViewOf(const ClipPageRequest& request, const ViewOnPage& view, cons
   std::vector<double> times;
   for (const double moment : moments) times.push_back(view.camera.HasClock() ? view.camera.TimeAt(moment) : moment);
   const PersonOnPage& person = request.people[0];
-  TrackVideo video(view.video, TrackSeenBy(view.camera, *person.body, *person.track), view.video_px_from_camera_px);
+  Track seen = TrackSeenBy(view.camera, *person.body, *person.track);
+  seen.playback = view.playback;
+  TrackVideo video(view.video, seen, view.video_px_from_camera_px);
   shown.video_mp4 = VideoBytes(request.out, times, fps, &video, [&](size_t i, const Image*) { update(i); });
   return shown;
 }

@@ -29,6 +29,7 @@ struct ViewOnPage {
   RigCamera camera;  ///< name, intrinsics, pose relative to the tracks' camera, and clock
   std::string video;
   Matrix2x3d video_px_from_camera_px = NamedCamera().video_px_from_camera_px;
+  VideoPlayback playback;  ///< of that video
 };
 
 struct ClipPageRequest {

@@ -51,6 +51,7 @@ class PersonAnimation {
 
   AnimatePersonSummary Run() {
     CheckRequest();
+    if (!request_.track.empty()) track_ = ReadTrack(request_.track);  // before the person, who takes longer to make
     std::optional<ShownLight> light;
     if (!request_.relight.empty()) light = OtherLight(request_.relight);
     clock_.Begin("person");
@@ -121,9 +122,8 @@ class PersonAnimation {
   }
 
   void OpenTrack() {
-    const Track read = ReadTrack(request_.track);
     try {
-      track_ = MovedByPerson(person_, read, request_.own_stature ? PersonPlacing::kInScene : PersonPlacing::kInImage);
+      track_ = MovedByPerson(person_, track_, request_.own_stature ? PersonPlacing::kInScene : PersonPlacing::kInImage);
       if (!person_.garment.empty() && Draws()) cloth_.emplace(*person_.clothed, person_.garment, track_);
       if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
       int first = 0, last = track_.num_frames() - 1;
@@ -133,9 +133,8 @@ class PersonAnimation {
         track_ = FramesInOrder(track_, order_);
         first = freeze.frame, last = freeze.frame + freeze.count;
       }
-      if (track_.camera.HasDistortion()) {
-        throw std::runtime_error(request_.track + ": its camera's lens is distorted, expected an undistorted one");
-      }
+      // A background may be the track's own video, whose straight lines the lens bends, too.
+      if (request_.background.empty()) track_.camera.distortion = {};
       const int longer = std::max(track_.camera.width, track_.camera.height);
       scale_ = request_.size > 0 && longer > 0 ? static_cast<double>(request_.size) / longer : 1;
       posed_.emplace(*person_.body, track_, ViewAngles(request_.view_yaw, track_.num_frames(), first, last));

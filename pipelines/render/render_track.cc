@@ -124,7 +124,7 @@ RenderTrackReport RenderChecked(const RenderTrackRequest& request, const BodyMod
   std::unique_ptr<TrackVideo> video;
   if (!request.video.empty()) {
     if (track.camera.width <= 0) {  // a track that does not tell was made in the pixels of its video
-      const VideoInfo info = VideoReader(request.video).info();
+      const VideoInfo info = VideoReader(request.video, track.playback.turn_deg).info();
       track.camera.width = info.width, track.camera.height = info.height;
     }
     video = std::make_unique<TrackVideo>(request.video, track);

@@ -13,7 +13,7 @@
 #include "data_tools/observations/load_detections.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/base/check.h"
-#include "pipelines/track/detected_people.h"
+#include "pipelines/track/observation_pixels.h"
 #include "pipelines/video/track_video.h"
 
 namespace bodyloom {

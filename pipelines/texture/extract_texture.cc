@@ -31,10 +31,11 @@ struct Gathered {
 /// The video frame of the track's time zero. A video of just the track's frames, or one that is over before the track
 /// begins, was cut to it: its first frame is the track's first, whatever the clock says.
 int VideoOffset(const std::string& path, const Track& track) {
-  const VideoInfo info = VideoReader(path).info();
+  const VideoInfo info = VideoReader(path, track.playback.turn_deg).info();
   if (track.num_frames() == 0) return 0;
-  const double fps = info.fps > 0 ? info.fps : VideoFrameRate(track.motion.timestamps);
-  const int first = static_cast<int>(std::lround(track.motion.timestamps[0] * fps));
+  const double slowdown = track.playback.slowdown;
+  const double fps = info.fps > 0 ? info.fps : VideoFrameRate(track.motion.timestamps) / slowdown;
+  const int first = static_cast<int>(std::lround(track.motion.timestamps[0] * slowdown * fps));
   const int num_frames = info.num_frames > 0 ? info.num_frames : static_cast<int>(VideoFrameTimes(path).size());
   const bool is_cut = num_frames > 0 && (num_frames == track.num_frames() || first >= num_frames);
   return is_cut ? -first : 0;

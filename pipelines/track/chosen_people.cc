@@ -80,6 +80,7 @@ TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& sc
   };
   TrackPeopleResult result = TrackPeople(std::move(inputs), options);
   if (cancelled) throw Cancelled();
+  for (TrackSequenceResult& person : result.people) person.track.playback = scene.playback;
   return result;
 }
 

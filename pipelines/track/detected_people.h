@@ -5,11 +5,11 @@
 #include <optional>
 #include <utility>
 
-#include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/people.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/detect/detect_people.h"
+#include "pipelines/detect/find_turn.h"
 #include "pipelines/track/scene_inputs.h"
 #include "pipelines/track/track_request.h"
 
@@ -30,6 +30,13 @@ ClipFrames SpanOf(const PersonTrack& person);
 /// Detection request made of the request's fields, with at most `max_people` people at a time (0: everybody).
 DetectPeopleRequest DetectionOf(const TrackSettings& request, int max_people = 0);
 
+/// The settings with the turn of their video, which FindTurn() finds if they do not give it.
+template <typename Settings>
+Settings WithTurn(Settings settings, const PipelineCallbacks& callbacks) {
+  if (!settings.turn_deg) settings.turn_deg = FindTurn(DetectionOf(settings), callbacks);
+  return settings;
+}
+
 /// DetectPeople() by DetectionOf().
 DetectedClip DetectForTracking(const TrackSettings& request, const PipelineCallbacks& callbacks, int max_people = 0);
 
@@ -38,15 +45,5 @@ DetectedClip DetectForTracking(const TrackSettings& request, const PipelineCallb
 /// scene's camera differs from the video's.
 DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack& person, ClipFrames frames,
                                     const TrackSettings& request, const SceneInputs& scene);
-
-// Transformation of observations from a video's pixels to those of its calibrated camera.
-
-/// Moves keypoints at p to q with p = video_from_camera · (q, 1). The image size becomes the camera's.
-KeypointSequence MovedToCamera(KeypointSequence keypoints, const Matrix2x3d& video_from_camera, int camera_width,
-                               int camera_height);
-
-/// Resamples labels: each pixel of the camera's image takes the label of the nearest pixel of the video.
-PartLabelSequence MovedToCamera(const PartLabelSequence& labels, const Matrix2x3d& video_from_camera, int camera_width,
-                                int camera_height);
 
 }  // namespace bodyloom

@@ -81,7 +81,7 @@ OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what) {
   Track track = *what.track;
   KeypointSequence detected = what.detected != nullptr ? *what.detected : KeypointSequence();
-  const double fps = VideoFrameRate(track.motion.timestamps);
+  const double fps = VideoFrameRate(track.motion.timestamps) / track.playback.slowdown;
   std::unique_ptr<TrackVideo> video;
   if (!what.video.empty()) {
     video = std::make_unique<TrackVideo>(what.video, track, what.video_px_from_camera_px, what.video_offset);
@@ -138,7 +138,8 @@ OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOver
   options.up_in_camera = what.up_in_camera;
   options.num_threads = 1;  // a picture each: WriteFrames()
   const PeopleOverlay overlay(std::move(people), options, what.ground);
-  VideoWriter writer(path, overlay.width(), overlay.height(), VideoFrameRate(overlay.timestamps()));
+  const double fps = VideoFrameRate(overlay.timestamps()) / what.people[0].track->playback.slowdown;
+  VideoWriter writer(path, overlay.width(), overlay.height(), fps);
   const auto draw = [](const PeopleOverlay& own, int moment, const Image* background) {
     return own.Render(moment, background);
   };

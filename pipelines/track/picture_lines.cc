@@ -66,9 +66,8 @@ PictureVertical VerticalOf(const FrameSamples& samples, const std::vector<Covere
   return FindPictureVertical(segments, CameraOfLines(scene));
 }
 
-Matrix2x3d VideoFromCamera(const SceneRequest& request, const FrameSamples& samples, const SceneInputs& scene) {
-  return VideoFromCameraPixels(scene.camera.video_px_from_camera_px, scene.camera.camera, samples.image_width(),
-                               samples.image_height(), request.video);
+Matrix2x3d VideoFromCamera(const SceneRequest& request, const VideoInfo& video, const SceneInputs& scene) {
+  return VideoFromCameraPixels(scene.camera.video_px_from_camera_px, scene.camera.camera, video, request.video);
 }
 
 }  // namespace
@@ -93,7 +92,7 @@ PictureVertical VerticalOfClip(const TrackSettings& request, const DetectedClip&
       }
     }
   });
-  return VerticalOf(samples, covered, VideoFromCamera(request, samples, scene), scene, threads);
+  return VerticalOf(samples, covered, VideoFromCamera(request, clip.video, scene), scene, threads);
 }
 
 PictureVertical VerticalOfVideo(const TrackRequest& request, const KeypointSequence* keypoints,
@@ -101,7 +100,8 @@ PictureVertical VerticalOfVideo(const TrackRequest& request, const KeypointSeque
   PictureVertical none;
   none.why = request.live_lag ? "live tracking does not use it" : WhyNoLines(request, scene);
   if (!none.why.empty()) return none;
-  FrameSource source(request.video, {.fps = request.fps});
+  FrameSource source(request.video,
+                     {.fps = request.fps, .turn_deg = scene.playback.turn_deg, .captured_fps = request.captured_fps});
   FrameSamples samples;
   std::vector<double> times;
   Image frame;
@@ -112,7 +112,7 @@ PictureVertical VerticalOfVideo(const TrackRequest& request, const KeypointSeque
   }
   Matrix2x3d map;
   try {
-    map = VideoFromCamera(request, samples, scene);
+    map = VideoFromCamera(request, source.info(), scene);
   } catch (const std::runtime_error& error) {  // another crop: of no use here, and no fault of the track
     none.why = error.what();
     return none;

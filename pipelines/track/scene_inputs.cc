@@ -10,6 +10,7 @@
 #include "geometry/base/check.h"
 #include "pipelines/detect/detect_people.h"
 #include "pipelines/files.h"
+#include "pipelines/video/track_video.h"
 
 namespace bodyloom {
 namespace {
@@ -50,16 +51,34 @@ void UseCameraPath(const SceneRequest& request, SceneInputs* inputs) {
   }
 }
 
-/// Takes image size and frame rate from the video, or checks the size against what is known.
-void UseVideo(const std::string& path, SceneInputs* inputs) {
-  const VideoInfo info = VideoReader(path).info();
-  inputs->video_fps = info.fps;
+/// Intrinsics of an anamorphic video's stored pixels in its square ones, in which errors of detectors are alike along
+/// both axes. Distortion is of normalised coordinates, so it stays.
+Camera InSquarePixels(Camera camera, const VideoInfo& video) {
+  const Matrix2x3d square_from_stored = ScaleOfPixels({camera.width, camera.height}, {video.width, video.height});
+  camera.fx *= square_from_stored(0, 0);
+  camera.fy *= square_from_stored(1, 1);
+  camera.cx = square_from_stored(0, 0) * camera.cx + square_from_stored(0, 2);
+  camera.cy = square_from_stored(1, 1) * camera.cy + square_from_stored(1, 2);
+  camera.width = video.width;
+  camera.height = video.height;
+  return camera;
+}
+
+/// Takes image size and frame rate from the video. `is_calibrated`: the camera's size is that of known intrinsics.
+void UseVideo(const SceneRequest& request, bool is_calibrated, SceneInputs* inputs) {
+  const int turn_deg = request.turn_deg.value_or(0);
+  const VideoInfo info = VideoReader(request.video, turn_deg).info();
+  inputs->video = info;
+  inputs->playback = PlaybackOf(info, turn_deg, request.captured_fps);
   if (inputs->focal_35mm_mm == 0 && info.focal_35mm_mm > 0) {
     inputs->focal_35mm_mm = info.focal_35mm_mm;
     inputs->focal_35mm_log_sigma = info.fps > 0 ? kSteadiedLogSigma : kLensLogSigma;
   }
   Camera& camera = inputs->camera.camera;
-  if (camera.width == 0) {
+  const bool is_stored = camera.width == info.stored_width && camera.height == info.stored_height;
+  if (camera.width > 0 && is_calibrated && is_stored && info.IsAnamorphic()) {
+    camera = InSquarePixels(camera, info);
+  } else if (camera.width == 0 || is_stored) {
     camera.width = info.width;
     camera.height = info.height;
   }
@@ -117,7 +136,11 @@ SceneInputs LoadSceneInputs(const SceneRequest& request, const GivenInMemory& gi
     inputs.focal_35mm_log_sigma = kLensLogSigma;
   }
   UseCameraPath(request, &inputs);
-  if (!request.video.empty()) UseVideo(request.video, &inputs);
+  if (!request.video.empty()) {
+    const bool by_path = inputs.camera_path && inputs.camera.name == request.camera_path;
+    const bool is_calibrated = given.camera || !request.cameras.empty() || by_path;
+    UseVideo(request, is_calibrated, &inputs);
+  }
   // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
   // hypotheses do (docs/benchmarks.md).
   if (request.lifter != "none" && (needs_lifter || !request.lifter.empty())) {

@@ -7,11 +7,13 @@
 
 #include "data_tools/observations/load_camera_path.h"
 #include "data_tools/observations/load_cameras.h"
+#include "data_tools/video/video_reader.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/camera.h"
 #include "geometry/scene/lifter_weights.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/pose_prior.h"
+#include "geometry/scene/track.h"
 #include "pipelines/track/track_request.h"
 #include "tracking/problem/track_input.h"
 
@@ -33,7 +35,10 @@ struct SceneInputs {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
   double focal_35mm_mm = 0;         ///< of the lens, from the request or the video's metadata; 0: unknown
   double focal_35mm_log_sigma = 0;  ///< standard deviation of log(focal length)
-  double video_fps = 0;
+  VideoInfo video;                  ///< of the turned video; width 0: there is none
+  VideoPlayback playback;           ///< of the video
+  /// Rate of the video's frames on the track's clock; 0: unknown.
+  [[nodiscard]] double video_fps() const { return video.fps * playback.slowdown; }
   double stature_m = 0;  ///< of the tracked person; 0: the mean body's
 
   /// The tracker's input for the scene, without the camera's path, of which each person needs different frames; holds

@@ -42,6 +42,7 @@ TrackSequenceResult SolveTrack(const TrackRequest& request, const TrackInputs& i
   TrackSequenceResult result = request.live_lag ? TrackLive(inputs.ForTracker(), LiveOptionsOf(request, options))
                                                 : FitClip(inputs.ForTracker(), options);
   if (cancelled || (!stage.empty() && !callbacks.ReportProgress(stage, share))) throw Cancelled();
+  result.track.playback = inputs.playback;
   if (result.summary.IsUsable() && !result.track.world) result.track.world = AssumedWorld(result.track.joints);
   return result;
 }

@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipelines/track/track_inputs.h"
 
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "data_tools/formats/npz.h"
+#include "data_tools/motion/motion_tools.h"
 #include "data_tools/motion/track_io.h"
+#include "data_tools/observations/frame_numbers.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/observations/part_labels.h"
 #include "geometry/base/check.h"
+#include "geometry/scene/track_edits.h"
 #include "pipelines/files.h"
 #include "pipelines/track/detected_people.h"
+#include "pipelines/track/observation_pixels.h"
 #include "pipelines/track/picture_lines.h"
 #include "tracking/detection/iuv_to_dense.h"
 #include "tracking/initialise/swap_repair.h"
@@ -25,7 +30,7 @@ namespace {
 
 /// Frame rate of observations that give none; 0 when the request and the video give none either.
 double FrameRate(const TrackRequest& request, const TrackInputs& inputs) {
-  return request.fps > 0 ? request.fps : inputs.video_fps;
+  return request.fps > 0 ? request.fps : inputs.video_fps();
 }
 
 InitialPoses ReadInitialiser(const TrackRequest& request, const TrackInputs& inputs) {
@@ -71,6 +76,17 @@ Holds WhatItHolds(const std::string& path) {
   return {HasKeypoints(arrays) || !HasDense(arrays), HasDense(arrays)};
 }
 
+/// Observations of an anamorphic video may be in its stored pixels, as most detectors see them, or in square ones.
+template <typename Sequence>
+void UseCameraPixels(const std::string& path, const PipelineCallbacks& callbacks, const TrackInputs& inputs,
+                     Sequence* seen) {
+  const int width = seen->image_width, height = seen->image_height;
+  const Camera& camera = inputs.camera.camera;
+  if (!MoveToCamera(PixelsOf(inputs.video), camera, seen)) return;
+  callbacks.Message(Concatenate(path, ": made in pixels that are not square, ", width, "x", height, "; moved to ",
+                                camera.width, "x", camera.height));
+}
+
 /// The one image size of a clip: the camera's, which the observations may bring but not contradict.
 void AgreeOnImageSize(const std::string& path, int width, int height, Camera* camera) {
   if (width == 0) {
@@ -86,7 +102,8 @@ void AgreeOnImageSize(const std::string& path, int width, int height, Camera* ca
   }
 }
 
-void UseDense(const std::string& path, const TrackRequest& request, TrackInputs* inputs) {
+void UseDense(const std::string& path, const TrackRequest& request, const PipelineCallbacks& callbacks,
+              TrackInputs* inputs) {
   LoadDenseOptions options;
   const double fps = FrameRate(request, *inputs);
   if (fps > 0) {
@@ -95,11 +112,12 @@ void UseDense(const std::string& path, const TrackRequest& request, TrackInputs*
   options.person = request.person;
   options.uv_sigma = request.dense_uv_sigma;
   inputs->dense = LoadDense(path, *inputs->body, options);
+  UseCameraPixels(path, callbacks, *inputs, &*inputs->dense);
   AgreeOnImageSize(path, inputs->dense->image_width, inputs->dense->image_height, &inputs->camera.camera);
 }
 
 /// 2D joints, and the dense keypoints that lie in the same file.
-void UseDetections(const TrackRequest& request, TrackInputs* inputs) {
+void UseDetections(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
   Camera& camera = inputs->camera.camera;
   const Holds holds = WhatItHolds(request.detections);
   if (holds.keypoints) {
@@ -109,12 +127,19 @@ void UseDetections(const TrackRequest& request, TrackInputs* inputs) {
     options.fps = FrameRate(request, *inputs);
     options.image_width = camera.width;
     options.image_height = camera.height;
+    const VideoPixels video = PixelsOf(inputs->video);
+    const Eigen::Vector2i of_camera(camera.width, camera.height);
+    if (video.Differ(video.stored, of_camera) || video.Differ(video.square, of_camera)) {
+      options.image_width = video.stored.x(), options.image_height = video.stored.y();
+      options.other_width = video.square.x(), options.other_height = video.square.y();
+    }
     options.min_confidence = request.min_confidence;
     options.convention = request.convention;
     inputs->keypoints = LoadDetections(request.detections, options);
+    UseCameraPixels(request.detections, callbacks, *inputs, &*inputs->keypoints);
     AgreeOnImageSize(request.detections, inputs->keypoints->image_width, inputs->keypoints->image_height, &camera);
   }
-  if (holds.dense && request.dense.empty()) UseDense(request.detections, request, inputs);
+  if (holds.dense && request.dense.empty()) UseDense(request.detections, request, callbacks, inputs);
 }
 
 void UseGivenKeypoints(const TrackRequest& request, const KeypointSequence& keypoints, TrackInputs* inputs) {
@@ -122,6 +147,46 @@ void UseGivenKeypoints(const TrackRequest& request, const KeypointSequence& keyp
   inputs->keypoints = keypoints;
   DropUnsure(request.min_confidence, &*inputs->keypoints);
   AgreeOnImageSize(request.detections, keypoints.image_width, keypoints.image_height, &camera);
+}
+
+Track ReadReference(const TrackRequest& request, const TrackInputs& inputs) {
+  Track reference = ReadTrack(request.reference, MovingCamera::kTake);
+  if (reference.num_frames() == inputs.num_frames()) return reference;
+  throw std::runtime_error(Concatenate(request.reference, ": ", reference.num_frames(), " frames, expected the ",
+                                       inputs.num_frames(), " of the detections"));
+}
+
+/// Keeps the frames of the request's span, which is on the video's clock.
+void CutToSpan(const TrackRequest& request, TrackInputs* inputs) {
+  if (request.from_s <= 0 && request.to_s < 0) return;
+  constexpr double kSameTime = 1e-6;
+  const std::vector<double> times = inputs->timestamps();
+  const double slowdown = inputs->playback.slowdown;
+  int first = 0, last = inputs->num_frames() - 1;
+  while (first <= last && times[size_t(first)] * slowdown < request.from_s - kSameTime) ++first;
+  while (request.to_s >= 0 && last >= first && times[size_t(last)] * slowdown > request.to_s + kSameTime) --last;
+  if (first > last) {
+    throw RequestError(Concatenate("the clip from second ", request.from_s, " to ", request.to_s,
+                                   " holds none of the detections' frames, which are from second ",
+                                   times.front() * slowdown, " to ", times.back() * slowdown));
+  }
+  const auto cut = [&](auto* observations) {
+    if (*observations) *observations = CutFrames(std::move(**observations), first, last);
+  };
+  cut(&inputs->keypoints), cut(&inputs->dense), cut(&inputs->part_labels);
+  const int count = last - first + 1;
+  if (inputs->initialiser) {
+    InitialPoses& initial = *inputs->initialiser;
+    initial.motion = TakeFrames(initial.motion, first, count);
+    if (!initial.landmarks.empty()) {
+      initial.landmarks = {initial.landmarks.begin() + first, initial.landmarks.begin() + last + 1};
+    }
+  }
+  if (inputs->reference) {
+    std::vector<int> frames(static_cast<size_t>(count));
+    std::iota(frames.begin(), frames.end(), first);
+    inputs->reference = FramesInOrder(*inputs->reference, frames);
+  }
 }
 
 /// Detects people in the video: the chosen one's landmarks, and the mask.
@@ -164,8 +229,9 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   return input;
 }
 
-TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks& callbacks,
+TrackInputs LoadTrackInputs(const TrackRequest& given_request, const PipelineCallbacks& callbacks,
                             const GivenInMemory& given) {
+  const TrackRequest request = WithTurn(given_request, callbacks);
   TrackInputs inputs;
   static_cast<SceneInputs&>(inputs) =
       LoadSceneInputs(request, given, request.detections, !ReadsJointsOffLabels(request));
@@ -173,10 +239,10 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
   if (given.keypoints != nullptr) {
     UseGivenKeypoints(request, *given.keypoints, &inputs);
   } else if (!request.detections.empty()) {
-    UseDetections(request, &inputs);
+    UseDetections(request, callbacks, &inputs);
   }
   if (!request.dense.empty()) {
-    UseDense(request.dense, request, &inputs);
+    UseDense(request.dense, request, callbacks, &inputs);
   }
   if (!request.part_labels.empty()) {
     ReadPartLabelsOptions options;
@@ -185,6 +251,7 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
       options.fps = fps;
     }
     inputs.part_labels = ReadPartLabels(request.part_labels, options);
+    UseCameraPixels(request.part_labels, callbacks, inputs, &*inputs.part_labels);
     AgreeOnImageSize(request.part_labels, inputs.part_labels->image_width, inputs.part_labels->image_height, &camera);
     inputs.joints_from_labels = ReadsJointsOffLabels(request);
     if (inputs.joints_from_labels) inputs.keypoints = KeypointsFromPartLabels(*inputs.part_labels);
@@ -199,20 +266,15 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
   if (!request.video.empty() && !DetectsPeople(request)) {
     inputs.picture_vertical = VerticalOfVideo(request, inputs.keypoints ? &*inputs.keypoints : nullptr, inputs);
   }
+  if (!request.init.empty()) inputs.initialiser = ReadInitialiser(request, inputs);
+  if (!request.reference.empty()) inputs.reference = ReadReference(request, inputs);
+  if (!DetectsPeople(request)) CutToSpan(request, &inputs);
   if (inputs.camera_path) {
     inputs.camera_from_scene =
         CamerasAt(request, *inputs.camera_path, inputs.timestamps(), inputs.timestamps(), &inputs.camera_path_report);
     inputs.camera_scale_m = CameraScaleOf(request, *inputs.camera_path);
   }
-  if (!request.init.empty()) inputs.initialiser = ReadInitialiser(request, inputs);
   if (inputs.initialiser && !inputs.initialiser->landmarks.empty()) inputs.lifted = LiftedWith(request, inputs);
-  if (!request.reference.empty()) {
-    inputs.reference = ReadTrack(request.reference, MovingCamera::kTake);
-    if (inputs.reference->num_frames() != inputs.num_frames()) {
-      throw std::runtime_error(Concatenate(request.reference, ": ", inputs.reference->num_frames(),
-                                           " frames, expected the ", inputs.num_frames(), " of the detections"));
-    }
-  }
   return inputs;
 }
 

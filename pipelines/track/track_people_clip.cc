@@ -118,11 +118,13 @@ void WriteReportPage(const TrackPeopleClipRequest& request, const SceneInputs& s
 
 }  // namespace
 
-TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const PipelineCallbacks& callbacks,
+TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, const PipelineCallbacks& callbacks,
                                   const GivenInMemory& given) {
-  CheckClipRequest(request, given);
+  CheckClipRequest(given_request, given);
   StageClock clock;
   clock.Begin("read");
+  TrackPeopleClipRequest request = given_request;
+  request.track = WithTurn(request.track, callbacks);
   const SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
@@ -151,12 +153,14 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& request, const P
   return report;
 }
 
-TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks,
+TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& given_request, const PipelineCallbacks& callbacks,
                                   const GivenInMemory& given) {
-  CheckRequest(request, given);
-  RequireFiles(request.track, request.track.detector);
+  CheckRequest(given_request, given);
+  RequireFiles(given_request.track, given_request.track.detector);
   StageClock clock;
   clock.Begin("read");
+  TrackPeopleRequest request = given_request;
+  request.track = WithTurn(request.track, callbacks);
   const SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);

@@ -112,7 +112,7 @@ void CheckVideosRequest(const TrackPeopleInVideosRequest& request, const std::ve
 
 /// Reads the views' cameras and models.
 std::vector<VideoOfView> LoadVideos(const TrackPeopleInVideosRequest& request, const std::vector<std::string>& names,
-                                    const std::shared_ptr<const BodyModel>& body) {
+                                    const std::shared_ptr<const BodyModel>& body, const PipelineCallbacks& callbacks) {
   const KnownRig rig({.cameras = request.track.cameras,
                       .detections = request.videos[0],
                       .names_given = !request.views.empty(),
@@ -127,6 +127,7 @@ std::vector<VideoOfView> LoadVideos(const TrackPeopleInVideosRequest& request, c
     VideoOfView& view = videos.emplace_back();
     view.name = names[v];
     view.request = RequestOfVideo(request, v);
+    view.request.track = WithTurn(view.request.track, callbacks);
     view.video = view.request.track.video;
     view.scene = LoadSceneInputs(view.request.track, given);
     UseFocal(view.request.track, &view.scene.camera.camera);
@@ -193,6 +194,7 @@ TrackPeopleInViewsResult Solve(const TrackPeopleInVideosRequest& request, const 
       Concatenate("tracking ", count, count == 1 ? " person in " : " people in ", videos.size(), " videos"));
   TrackPeopleInViewsResult result = TrackPeopleInViews(ScenesOf(videos), videos[0].scene.ForTracker(), options);
   if (cancelled) throw Cancelled();
+  for (TrackSequenceResult& person : result.people) person.track.playback = videos[0].scene.playback;
   return result;
 }
 
@@ -249,6 +251,7 @@ void WriteOverlayOfView(const TrackPeopleInVideosRequest& request, const VideoOf
   for (size_t i = 0; i < count; ++i) {
     if (report->people[i].track.empty()) continue;
     tracks[i] = TrackSeenBy(camera, *view.scene.body, result.people[i].track);
+    tracks[i].playback = view.scene.playback;
     PersonInOverlay& person = overlay.people.emplace_back();
     person.body = view.scene.body.get();
     person.track = &tracks[i];
@@ -284,7 +287,8 @@ void WritePageOfViews(const TrackPeopleInVideosRequest& request, const std::vect
   for (size_t v = 1; v < videos.size(); ++v) {
     const ViewReport& view = report->views[v];
     if (!view.left_out.empty()) continue;
-    page.views.push_back({view.camera, view.video, videos[v].scene.camera.video_px_from_camera_px});
+    const SceneInputs& scene = videos[v].scene;
+    page.views.push_back({view.camera, view.video, scene.camera.video_px_from_camera_px, scene.playback});
   }
   page.title =
       std::filesystem::path(page.video).filename().string() + " and " + std::to_string(page.views.size()) + " more";
@@ -334,7 +338,7 @@ TrackPeopleReport TrackPeopleInVideos(const TrackPeopleInVideosRequest& request,
   CheckVideosRequest(request, names);
   StageClock clock;
   clock.Begin("read");
-  std::vector<VideoOfView> videos = LoadVideos(request, names, body);
+  std::vector<VideoOfView> videos = LoadVideos(request, names, body, callbacks);
   clock.Begin("detect");
   std::vector<std::string> outputs;
   DetectInVideos(request, callbacks, &videos, &outputs);

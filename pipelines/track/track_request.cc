@@ -3,6 +3,7 @@
 
 #include "data_tools/observations/keypoint_conventions.h"
 #include "geometry/base/callbacks.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 
@@ -32,6 +33,13 @@ bool ReadsJointsOffLabels(const TrackRequest& request) {
 }
 
 void CheckTrackSettings(const TrackSettings& request) {
+  if (request.turn_deg && *request.turn_deg != 0 && *request.turn_deg != 90 && *request.turn_deg != 180 &&
+      *request.turn_deg != 270) {
+    throw RequestError(Concatenate("--rotate ", *request.turn_deg, ": expected 90, 180, 270 or auto"));
+  }
+  if (request.video.empty() && (request.turn_deg != 0 || request.captured_fps > 0)) {
+    throw RequestError("--rotate and --captured-fps are of a video: give --video");
+  }
   if (request.camera == "pinhole" && request.cameras.empty() && request.focal_px == 0 && request.camera_path.empty()) {
     throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
   }
@@ -62,8 +70,8 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (request.plan && DetectsPeople(request)) {
     throw RequestError("--plan needs detections: what runs depends on them (bodyloom detect makes them)");
   }
-  if ((request.from_s > 0 || request.to_s >= 0) && !DetectsPeople(request)) {
-    throw RequestError("--from and --to are for a video in which people are detected: leave out the detections");
+  if (!request.turn_deg && !DetectsPeople(request)) {
+    throw RequestError("--rotate auto asks the detector, and the detections are given: say --rotate 90, 180 or 270");
   }
   if (!request.detector.pose_model.empty() && !DetectsPeople(request)) {
     throw RequestError("--pose-model detects people in a video: leave out the detections");

@@ -13,7 +13,10 @@ namespace bodyloom {
 
 /// Parts of the scene that do not depend on the person: body model, camera, and learned models.
 struct SceneRequest {
-  std::string video;     ///< for image size, frame rate and overlay; alone: people are detected in it
+  std::string video;                ///< for image size, frame rate and overlay; alone: people are detected in it
+  std::optional<int> turn_deg = 0;  ///< clockwise turn of the video's frames, 0, 90, 180 or 270; none: FindTurn()
+  /// Rate at which a slow-motion video was filmed: the track's clock then is that of the scene. 0: as it is played.
+  double captured_fps = 0;
   std::string body;      ///< body model; empty: the built-in one
   std::string prior;     ///< pose prior; empty: the built-in one; "none"
   std::string lifter;    ///< weights of the lifter of 2D joints; empty: the built-in ones; "none"
@@ -39,7 +42,7 @@ struct DetectionSettings {
   FrameDetectorOptions detector;  ///< its masks and max_people are not used
   double detect_rate = 0;         ///< detection rate in slow motion, frames per second; 0: all frames
   bool use_mask = true;           ///< the person's mask becomes the silhouette term
-  double from_s = 0, to_s = -1;   ///< range of the video, seconds; to_s < 0: to the end
+  double from_s = 0, to_s = -1;   ///< range of the video, or of the detections, seconds; to_s < 0: to the end
   double fps = 0;                 ///< frame rate without timestamps; 0: the video's, else 30
   double min_confidence = 0;      ///< landmarks below it are treated as missing
 };

@@ -141,6 +141,7 @@ TrackReport TrackViewsClip(const TrackViewsRequest& request, const PipelineCallb
   };
   TrackViewsResult result = TrackViews(ObservedViews(views), first.ForTracker(), options);
   if (cancelled) throw Cancelled();
+  result.joint.track.playback = first.playback;
   TrackSequenceSummary& joint = result.joint.summary;
   joint.seconds.emplace_back("views alone", result.summary.seconds_alone);
   if (joint.IsUsable()) {

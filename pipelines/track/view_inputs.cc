@@ -34,6 +34,8 @@ TrackRequest RequestOfView(const TrackViewsRequest& request, size_t v) {
   one.view = request.views.empty() ? "" : request.views[v];
   if (v > 0) {
     one.video = one.reference = "";
+    one.from_s = 0;
+    one.to_s = -1;
   }
   return one;
 }

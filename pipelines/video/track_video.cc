@@ -9,25 +9,55 @@
 #include "geometry/base/check.h"
 
 namespace bodyloom {
+namespace {
+
+bool IsScaledCopy(const Camera& camera, int width, int height) {
+  const double sx = double(width) / camera.width, sy = double(height) / camera.height;
+  return std::abs(sx / sy - 1) <= 0.01;
+}
+
+}  // namespace
+
 Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, int width, int height,
                                  const std::string& path) {
   if (!map.isApprox(NamedCamera().video_px_from_camera_px)) {
     return map;
   }
-  const double sx = static_cast<double>(width) / camera.width, sy = static_cast<double>(height) / camera.height;
-  if (!(std::abs(sx / sy - 1) <= 0.01)) {
+  if (!IsScaledCopy(camera, width, height)) {
     throw std::runtime_error(Concatenate(path, ": frames of ", width, "x", height, ", expected those of the camera, ",
                                          camera.width, "x", camera.height, ", or a scaled copy of them"));
   }
+  return ScaleOfPixels({camera.width, camera.height}, {width, height});
+}
+
+Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, const VideoInfo& video,
+                                 const std::string& path) {
+  const bool has_map = !map.isApprox(NamedCamera().video_px_from_camera_px);
+  const bool in_stored_pixels = !IsScaledCopy(camera, video.width, video.height) &&
+                                IsScaledCopy(camera, video.stored_width, video.stored_height) &&
+                                camera.model == CameraModel::kPinhole;
+  if (has_map || !in_stored_pixels) return VideoFromCameraPixels(map, camera, video.width, video.height, path);
+  return ScaleOfPixels({camera.width, camera.height}, {video.width, video.height});
+}
+
+Matrix2x3d ScaleOfPixels(const Eigen::Vector2i& from, const Eigen::Vector2i& to) {
+  const double sx = double(to.x()) / from.x(), sy = double(to.y()) / from.y();
   // Pixel centres lie at integers, so the image's corner (-0.5, -0.5) is what stays.
   return (Matrix2x3d() << sx, 0, 0.5 * (sx - 1), 0, sy, 0.5 * (sy - 1)).finished();
 }
 
+VideoPlayback PlaybackOf(const VideoInfo& video, int turn_deg, double captured_fps, double fps) {
+  constexpr double kUsualFps = 30;
+  const double played_fps = video.fps > 0 ? video.fps : fps > 0 ? fps : kUsualFps;
+  return {turn_deg, captured_fps > 0 ? captured_fps / played_fps : 1};
+}
+
 TrackVideo::TrackVideo(const std::string& path, const Track& track, const Matrix2x3d& map, int video_offset)
-    : reader_(path),
-      map_(VideoFromCameraPixels(map, track.camera, reader_.info().width, reader_.info().height, path)),
+    : reader_(path, track.playback.turn_deg),
+      map_(VideoFromCameraPixels(map, track.camera, reader_.info(), path)),
+      slowdown_(track.playback.slowdown),
       offset_(video_offset) {
-  fps_ = info().fps > 0 ? info().fps : VideoFrameRate(track.motion.timestamps);
+  fps_ = info().fps > 0 ? info().fps : VideoFrameRate(track.motion.timestamps) / slowdown_;
   times_ = VideoFrameTimes(path);
 }
 
@@ -48,12 +78,13 @@ Track TrackVideo::Moved(Track track) const {
 }
 
 int TrackVideo::IndexAt(double time_s) const {
-  if (times_.empty()) return static_cast<int>(std::lround(time_s * fps_)) + offset_;
+  const double played_s = time_s * slowdown_;
+  if (times_.empty()) return static_cast<int>(std::lround(played_s * fps_)) + offset_;
   // The track's time zero, and by it the track's time, on the video's clock.
   const int last = int(times_.size()) - 1;
   const double zero =
       offset_ < 0 ? offset_ / fps_ : times_[size_t(std::min(offset_, last))] + std::max(0, offset_ - last) / fps_;
-  const double time = zero + time_s, half_frame = 0.5 / fps_;
+  const double time = zero + played_s, half_frame = 0.5 / fps_;
   if (time < -half_frame) return -1;
   if (time > times_.back() + half_frame) return last + 1;
   const auto after = std::lower_bound(times_.begin(), times_.end(), time);

@@ -11,8 +11,8 @@
 
 namespace bodyloom {
 
-/// Video of a track. Throws std::runtime_error when the video's size matches neither the camera nor a scaled copy of
-/// it.
+/// Video of a track, played as the track says (VideoPlayback). Throws std::runtime_error when the video's size matches
+/// neither the camera nor a scaled copy of it.
 class TrackVideo {
  public:
   /// `map`: from the camera's pixels to the video's, used if it is not the identity. video_offset: the video frame of
@@ -40,7 +40,8 @@ class TrackVideo {
   VideoReader reader_;
   Matrix2x3d map_;
   std::vector<double> times_;  ///< when each frame of the video is shown, seconds; empty for a folder of images
-  double fps_ = 30;
+  double fps_ = 30;            ///< as played
+  double slowdown_ = 1;
   int offset_ = 0;
   Image frame_;
   bool has_frame_ = false;
@@ -50,6 +51,18 @@ class TrackVideo {
 /// between the two. Throws std::runtime_error naming `path` when the video is not a scaled copy of the camera's image.
 Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, int width, int height,
                                  const std::string& path);
+/// The same for a video, which is also a copy of the camera's image when the latter has the video's stored pixels, as
+/// that of a calibration by programs that take them for square: their sides are then scaled differently. A
+/// weak-perspective camera has square pixels.
+Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, const VideoInfo& video,
+                                 const std::string& path);
+
+/// Maps pixels of an image of `from` to those of an image of `to` that shows the same, both width × height.
+Matrix2x3d ScaleOfPixels(const Eigen::Vector2i& from, const Eigen::Vector2i& to);
+
+/// The way to play a video whose frames are turned clockwise by `turn_deg` and, if `captured_fps` > 0, were taken at
+/// that rate. `fps`: its rate where it does not tell one (30 if that is 0, too).
+VideoPlayback PlaybackOf(const VideoInfo& video, int turn_deg, double captured_fps, double fps = 0);
 
 /// Frame rate of a video from its timestamps: 1 / median step, clamped to [1, 240]; 30 for one frame.
 double VideoFrameRate(const std::vector<double>& timestamps);

@@ -547,6 +547,8 @@ def track(
     mask: bool = True,
     begin_s: float = 0.0,
     end_s: float | None = None,
+    rotate: int | Literal["auto"] = 0,
+    captured_fps: float | None = None,
     progress: _Progress | None = None,
 ) -> Track: ...
 def track_views(
@@ -601,6 +603,8 @@ def run(
     mask: bool = True,
     begin_s: float = 0.0,
     end_s: float | None = None,
+    rotate: int | Literal["auto"] = 0,
+    captured_fps: float | None = None,
     solver: Literal["chain+ceres", "chain", "ceres"] = "chain+ceres",
     threads: int = 0,
     uncertainty: bool = True,
@@ -624,6 +628,8 @@ def detect(
     detect_rate: float | None = None,
     begin_s: float = 0.0,
     end_s: float | None = None,
+    rotate: int | Literal["auto"] = 0,
+    captured_fps: float | None = None,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> list[Keypoints]: ...

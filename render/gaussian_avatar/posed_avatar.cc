@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
+#include "geometry/base/check.h"
 #include "render/gaussian_avatar/cloth_bones.h"
 #include "render/view/view_camera.h"
 
@@ -24,9 +24,7 @@ PosedAvatar::PosedAvatar(const BodyModel& body, const Track& track, std::vector<
       frames_(body, track.motion.betas),
       scale_(scale),
       num_threads_(num_threads) {
-  if (track.camera.HasDistortion()) {
-    throw std::runtime_error(where + ": its camera's lens is distorted; undistort the images and track them first");
-  }
+  BODYLOOM_CHECK(!track.camera.HasDistortion(), where, ": its camera's lens is distorted, expected an ideal one");
   const Camera camera = scale == 1 ? track.camera : ScaledCamera(track.camera, scale);
   width_ = camera.width, height_ = camera.height;
   extents_ = posed_.Extents(num_threads);

@@ -15,8 +15,8 @@ namespace bodyloom {
 /// Keeps references to body and track.
 class PosedAvatar {
  public:
-  /// `yaw_deg`: as for PosedTrack. `scale`: size of the images relative to the track's. Throws std::runtime_error
-  /// naming `where` when the camera's lens is distorted.
+  /// `yaw_deg`: as for PosedTrack. `scale`: size of the images relative to the track's. Throws
+  /// std::invalid_argument naming `where` when the camera's lens is distorted.
   PosedAvatar(const BodyModel& body, const Track& track, std::vector<double> yaw_deg, double scale, int num_threads,
               const std::string& where);
 

@@ -191,7 +191,7 @@ class MotionData::Impl {
     if (parts) notes_ += "body parts stand in for a parsing of the clothes\n";
     if (mask && !parts) notes_ += "the tracked body's parts, within the mask, stand in for a parsing of the clothes\n";
     if (has_outline_) notes_ += "the tracked body's normals stand in for those of the clothes\n";
-    VideoReader video(request.data);
+    VideoReader video(request.data, track_.playback.turn_deg);
     Image image;
     int t = 0;
     for (; t < track_.num_frames() && video.Read(&image); ++t) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include "data_tools/body/body_landmarks.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/aist_motion.h"
 #include "data_tools/motion/amass.h"
@@ -134,6 +135,30 @@ TEST(Amass, WrittenAndReadBack) {
   EXPECT_THROW(WriteAmass(path, broken, pelvis), std::invalid_argument);
   EXPECT_THAT(FileErrorOf("/nowhere/m.npz", [&] { WriteAmass("/nowhere/m.npz", RandomMotion(3), pelvis); }),
               HasSubstr("cannot"));
+}
+
+TEST(Amass, ShapeOfAnotherBodyIsNotWrittenAsSmpls) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("m.npz");
+  const Eigen::Vector3d pelvis(0.01, 0.3, -0.02);
+  Motion motion = RandomMotion(4, Motion::Up::kZ);
+  for (const bool smplx : {false, true}) {
+    motion.body = "bodyloom";
+    smplx ? WriteAmassSmplx(path, motion, pelvis) : WriteAmass(path, motion, pelvis);
+    const NpzArrays arrays = ReadNpz(path);
+    EXPECT_EQ(arrays.at("betas").ToDoubles(), std::vector<double>(16, 0.0));
+    EXPECT_EQ(arrays.at("source_body").ToStrings().front(), "bodyloom");
+    EXPECT_EQ(arrays.at("source_betas").ToMatrix(), motion.betas);
+    const Motion read = LoadMotion(path);
+    for (int t = 0; t < 4; ++t) {  // the place of the pelvis
+      const Eigen::RowVector3d expected = motion.trans.row(t) + pelvis.transpose();
+      EXPECT_TRUE((read.trans.row(t) + MeanPelvis(smplx ? "smplx" : "smpl").transpose()).isApprox(expected, 1e-12));
+    }
+  }
+  motion.body = "smplh";
+  WriteAmass(path, motion, pelvis);
+  EXPECT_EQ(ReadNpz(path).count("source_body"), 0U);
+  EXPECT_TRUE(LoadMotion(path).betas.isApprox(motion.betas));
 }
 
 std::string AistPickle(const std::vector<double>& poses, const std::vector<int>& shape, double scaling) {

@@ -73,6 +73,43 @@ TEST(DisplayMatrix, AllTurnsAndMirrorImages) {
   }
 }
 
+TEST(DisplayMatrix, OrientationsFollowOneAnother) {
+  const Image image = NumberedImage(5);
+  for (int first = 0; first < 8; ++first) {
+    for (int second = 0; second < 8; ++second) {
+      const auto orientation = [](int bits) {
+        return DisplayOrientation{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+      };
+      const Image stepwise = Oriented(Oriented(image, orientation(first)), orientation(second));
+      EXPECT_EQ(Oriented(image, Then(orientation(first), orientation(second))), stepwise) << first << ' ' << second;
+    }
+  }
+  const auto clockwise = [&](int degrees) { return Oriented(image, ClockwiseTurn(degrees)); };
+  EXPECT_EQ(clockwise(0), image);
+  EXPECT_EQ(clockwise(90), Moved(image, {0, 1, -1, 0}));
+  EXPECT_EQ(clockwise(180), Moved(image, {-1, 0, 0, -1}));
+  EXPECT_EQ(clockwise(270), Moved(image, {0, -1, 1, 0}));
+  EXPECT_THROW(ClockwiseTurn(45), std::invalid_argument);
+}
+
+TEST(DisplayMatrix, TurnsOfTheCallerForVideosAndImages) {
+  const TemporaryFolder folder;
+  const std::string clip = folder.File("clip.mp4"), still = folder.File("still.png");
+  Ffmpeg(NumberedInput(folder, 3) + "-c:v libx264rgb -qp 0 " + clip);
+  WriteImage(still, NumberedImage(0));
+  for (const std::string& path : {clip, still}) {
+    for (const int degrees : {0, 90, 180, 270}) {
+      VideoReader reader(path, degrees);
+      Image frame;
+      ASSERT_TRUE(reader.Read(&frame));
+      EXPECT_EQ(frame, Oriented(NumberedImage(0), ClockwiseTurn(degrees)));
+      EXPECT_EQ(reader.info().width, frame.width);
+      EXPECT_EQ(reader.info().stored_height, frame.height);
+    }
+    EXPECT_THROW(VideoReader(path, 30), std::invalid_argument);
+  }
+}
+
 /// As ffmpeg notes a rotation when it is told to, which is by the opposite sense in some of its versions.
 TEST(DisplayMatrix, NotedRotations) {
   const TemporaryFolder folder;

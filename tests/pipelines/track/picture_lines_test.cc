@@ -27,6 +27,8 @@ DetectedClip Clip() {
   DetectedClip clip;
   clip.people.image_width = kWidth;
   clip.people.image_height = kHeight;
+  clip.video.width = clip.video.stored_width = kWidth;
+  clip.video.height = clip.video.stored_height = kHeight;
   for (int t = 0; t < 4; ++t) {
     Image image(kWidth, kHeight, {80, 80, 80});
     AddBars(5, 20, 220, &image);

@@ -72,7 +72,7 @@ TEST(TrackRequest, AVideoAloneIsDetected) {
   request.plan = false;
   request.detections = "clip.json";
   EXPECT_FALSE(DetectsPeople(request));
-  EXPECT_THAT([&] { CheckTrackRequest(request); }, ThrowsMessage<RequestError>(HasSubstr("--from and --to")));
+  EXPECT_NO_THROW(CheckTrackRequest(request)) << "--from of the detections";
 }
 
 TEST(TrackRequest, KneesAreKeptStraightForBlazePosesJoints) {

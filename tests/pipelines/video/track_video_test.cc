@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "data_tools/video/frame_image.h"
 #include "tests/data_tools/video/clip_maker.h"
 
 namespace bodyloom::track_video_test {
@@ -55,6 +56,44 @@ TEST(TrackVideo, TheOffsetIsAFrameOfTheVideo) {
   TrackVideo early(path, TrackOf(96, 64), NamedCamera().video_px_from_camera_px, -2);
   EXPECT_EQ(ShownAt(early, 1.0 / 30), -1);
   EXPECT_EQ(ShownAt(early, 4.0 / 30), 2);
+}
+
+TEST(TrackVideo, SlowMotionAndTurnsAreThoseOfTheTrack) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("slow.mp4");
+  Ffmpeg(NumberedInput(folder, 16) + "-c:v libx264rgb -qp 0 " + path);
+  Track track = TrackOf(64, 96);
+  track.playback = {90, 8};
+  track.motion.timestamps = {0, 1.0 / 240};
+  TrackVideo video(path, track);
+  EXPECT_EQ(video.info().width, 64);
+  EXPECT_EQ(*video.At(0), Oriented(NumberedImage(0), ClockwiseTurn(90)));
+  EXPECT_EQ(*video.At(5.0 / 240), Oriented(NumberedImage(5), ClockwiseTurn(90)));
+  EXPECT_EQ(video.FramesAfter(5.0 / 240), 10);
+  EXPECT_EQ(video.At(16.5 / 240), nullptr);
+  EXPECT_EQ(PlaybackOf(video.info(), 90, 240), track.playback);
+  EXPECT_EQ(PlaybackOf(VideoInfo{}, 0, 240, 60).slowdown, 4) << "images at 60 a second";
+  EXPECT_EQ(PlaybackOf(VideoInfo{}, 0, 240).slowdown, 8);
+  EXPECT_EQ(PlaybackOf(video.info(), 0, 0), VideoPlayback());
+}
+
+TEST(TrackVideo, CamerasOfStoredOrSquarePixels) {
+  VideoInfo video;
+  video.width = 1024, video.height = 576, video.stored_width = 720, video.stored_height = 576;
+  const Matrix2x3d none = NamedCamera().video_px_from_camera_px;
+  const auto map = [&](int width, int height) {
+    return VideoFromCameraPixels(none, MakePinhole(width, height, 900), video, "dv.avi");
+  };
+  EXPECT_TRUE(map(1024, 576).isApprox(none));
+  EXPECT_TRUE(map(720, 576).isApprox(ScaleOfPixels({720, 576}, {1024, 576})));
+  EXPECT_TRUE(map(360, 288).isApprox(ScaleOfPixels({360, 288}, {1024, 576})));
+  // The corners of the images meet: (−0.5, −0.5), and (719.5, 575.5) with (1023.5, 575.5).
+  EXPECT_TRUE((map(720, 576) * Eigen::Vector3d(-0.5, -0.5, 1)).isApprox(Eigen::Vector2d(-0.5, -0.5)));
+  EXPECT_TRUE((map(720, 576) * Eigen::Vector3d(719.5, 575.5, 1)).isApprox(Eigen::Vector2d(1023.5, 575.5)));
+  EXPECT_THROW(map(640, 360 * 2), std::runtime_error);
+  Camera weak = MakePinhole(720, 576, 900);
+  weak.model = CameraModel::kWeakPerspective;
+  EXPECT_THROW(VideoFromCameraPixels(none, weak, video, "dv.avi"), std::runtime_error);
 }
 
 TEST(TrackVideo, AFolderOfImagesHasTheTracksRate) {

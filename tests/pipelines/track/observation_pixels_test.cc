@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipelines/track/detected_people.h"
+#include "pipelines/track/observation_pixels.h"
 
 #include <gtest/gtest.h>
 
-namespace bodyloom::move_observations_test {
+namespace bodyloom::observation_pixels_test {
 namespace {
 
 /// A video of half the camera's size, shifted by a few of its pixels.
@@ -45,6 +45,40 @@ TEST(MoveObservations, EachPixelOfTheCameraTakesTheLabelAtItsPlace) {
   EXPECT_EQ(labelled, 8) << "two pixels of the video are eight of the camera";
 }
 
+TEST(MoveObservations, DenseKeypointsKeepTheirFaces) {
+  DenseSequence dense;
+  dense.timestamps = {0};
+  dense.pixel_sigma_px = 3;
+  dense.frames = {{DenseKeypoint{.face = 7, .pixel = {13, 8}, .sigma_px = 2}}};
+  const DenseSequence moved = MovedToCamera(dense, HalfSize(), 200, 160);
+  EXPECT_EQ(moved.frames[0][0].face, 7);
+  EXPECT_TRUE(moved.frames[0][0].pixel.isApprox(Eigen::Vector2f(20, 20)));
+  EXPECT_FLOAT_EQ(moved.frames[0][0].sigma_px, 4);
+  EXPECT_DOUBLE_EQ(moved.pixel_sigma_px, 6);
+  EXPECT_EQ(moved.image_width, 200);
+}
+
+TEST(MoveObservations, OnlyBetweenTheSizesOfAnAnamorphicVideo) {
+  VideoInfo info;
+  info.width = 1024, info.height = 576, info.stored_width = 720, info.stored_height = 576;
+  const Camera square = MakePinhole(1024, 576, 900), stored = MakePinhole(720, 576, 900);
+  KeypointSequence seen;
+  seen.image_width = 720, seen.image_height = 576;
+  seen.points = {{359.5F, 287.5F, 1}};
+  KeypointSequence same = seen;
+  EXPECT_FALSE(MoveToCamera(PixelsOf(info), stored, &same));
+  EXPECT_EQ(same.points[0].x, 359.5F);
+  ASSERT_TRUE(MoveToCamera(PixelsOf(info), square, &seen));
+  EXPECT_FLOAT_EQ(seen.points[0].x, 511.5F) << "the centre stays the centre";
+  EXPECT_FLOAT_EQ(seen.points[0].y, 287.5F);
+  EXPECT_EQ(seen.image_width, 1024);
+  ASSERT_TRUE(MoveToCamera(PixelsOf(info), stored, &seen));
+  EXPECT_FLOAT_EQ(seen.points[0].x, 359.5F);
+  seen.image_width = 640;
+  EXPECT_FALSE(MoveToCamera(PixelsOf(info), stored, &seen)) << "another image altogether";
+  EXPECT_FALSE(PixelsOf(VideoInfo{}).Differ({720, 576}, {1024, 576})) << "no video";
+}
+
 TEST(MoveObservations, WhatLeavesTheCamerasImageIsCutOff) {
   PartLabelSequence labels;
   labels.image_width = labels.image_height = 100;
@@ -59,4 +93,4 @@ TEST(MoveObservations, WhatLeavesTheCamerasImageIsCutOff) {
 }
 
 }  // namespace
-}  // namespace bodyloom::move_observations_test
+}  // namespace bodyloom::observation_pixels_test
