@@ -16,6 +16,7 @@ namespace {
 constexpr const char* kEvaluateFooter =
     "What --truth may be, and the protocol it selects:\n"
     "  a track .npz (bodyloom synth writes truth.npz)   known-truth: vertices, joints, angles, camera\n"
+    "  a sequence of EMDB or 3DPW, .pkl                 emdb, 3dpw: the same, and errors in the world\n"
     "  part labels .npz (uint8 labels)                  part-labels: overlap of the rendered body with each part\n"
     "  an AIST++ folder (keypoints2d/, keypoints3d/)    aist-held-out: 3D joints, and the cameras that were not "
     "fitted\n"
@@ -50,6 +51,11 @@ void AddEvaluateVerb(CLI::App& app, Action* action) {
           "instead of --truth: what a calibrated camera saw of the person, VIEW[:PERSON]=FILE, once a camera")
       ->type_name("TEXT");
   verb->add_option("--body", c.body, "body that both were made with (default: the built-in body)")->type_name("FILE");
+  verb->add_option("--true-body", c.true_body, "EMDB, 3DPW: the true motion's body, SMPL of its sex (default: --body)")
+      ->type_name("FILE");
+  verb->add_option("--true-person", c.true_person, "3DPW: which of the file's people")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   verb->add_option("--json", c.json, "also write the numbers as JSON")->type_name("FILE");
   verb->add_option("--cameras", c.cameras, "AIST++: camera folder (default: TRUTH/cameras); --seen: the calibration")
       ->type_name("PATH");

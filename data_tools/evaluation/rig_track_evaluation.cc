@@ -24,6 +24,7 @@
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/time_bracket.h"
+#include "geometry/scene/track_edits.h"
 
 namespace bodyloom {
 namespace {
@@ -83,31 +84,6 @@ std::vector<double> FirstTimes(const Track& track, const RigCamera& camera) {
   if (!camera.HasClock()) return times;
   for (double& time : times) time = camera.FirstTimeAt(time);
   return times;
-}
-
-/// The frames of a track, without joints and landmarks.
-Track ChosenFrames(const Track& track, const std::vector<int>& frames) {
-  Track chosen;
-  chosen.camera = track.camera;
-  chosen.world = track.world;
-  chosen.motion.body = track.motion.body;
-  chosen.motion.up = track.motion.up;
-  chosen.motion.betas = track.motion.betas;
-  const bool has_sigma = track.joint_sigma.rows() == track.num_frames();
-  const bool has_status = track.frame_status.size() == size_t(track.num_frames());
-  const auto T = static_cast<Eigen::Index>(frames.size());
-  chosen.motion.poses.resize(T, track.motion.poses.cols());
-  chosen.motion.trans.resize(T, 3);
-  chosen.joint_sigma.resize(has_sigma ? T : 0, track.joint_sigma.cols());
-  for (Eigen::Index i = 0; i < T; ++i) {
-    const int t = frames[size_t(i)];
-    chosen.motion.poses.row(i) = track.motion.poses.row(t);
-    chosen.motion.trans.row(i) = track.motion.trans.row(t);
-    chosen.motion.timestamps.push_back(track.motion.timestamps[size_t(t)]);
-    if (has_status) chosen.frame_status.push_back(track.frame_status[size_t(t)]);
-    if (has_sigma) chosen.joint_sigma.row(i) = track.joint_sigma.row(t);
-  }
-  return chosen;
 }
 
 /// Errors of projected vertices in one camera, or in several.
@@ -407,8 +383,8 @@ Evaluation EvaluateAgainstRig(const Track& track, const Track& truth, const std:
                  times.back(), " s of the first camera's clock, the truth's from ", known.front(), " to ",
                  known.back());
 
-  const Track compared = ChosenFrames(track, frames);
-  Track compared_truth = ChosenFrames(at_times, frames);
+  const Track compared = SelectFrames(track, frames);
+  Track compared_truth = SelectFrames(at_times, frames);
   compared_truth.motion = MovedMotion(body, compared_truth.motion, {&own_from_rig, 1});
   compared_truth.motion.timestamps = compared.motion.timestamps;
   compared_truth.camera = rig[own].camera;

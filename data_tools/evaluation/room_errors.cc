@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "data_tools/evaluation/global_errors.h"
 #include "data_tools/evaluation/metrics.h"
 #include "geometry/base/check.h"
 #include "geometry/base/percentile.h"
@@ -21,7 +22,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kWindow = 100, kFirstFrames = 2;
+constexpr int kRoomWindow = 100, kRoomFirstFrames = 2;
 constexpr double kStandingAnkleMps = 0.1;
 
 struct Bone {
@@ -87,25 +88,6 @@ MatrixX3d MovedByYaw(const MatrixX3d& points, const MatrixX3d& fitted, const Mat
   return ((points.rowwise() - centre) * yaw.transpose()).rowwise() + to;
 }
 
-MatrixX3d MovedBySimilarity(const MatrixX3d& points, const MatrixX3d& fitted, const MatrixX3d& target) {
-  return AlignPoints(fitted, target).target_from_source.Apply(points);
-}
-
-/// Mean over the whole windows of the error after `moved`, fitted on the first frames of each.
-template <typename Moved>
-double WindowError(const std::vector<MatrixX3d>& track, const std::vector<MatrixX3d>& truth, int fitted_frames,
-                   const Moved& moved) {
-  double sum = 0;
-  int windows = 0;
-  for (size_t begin = 0; begin + kWindow <= track.size(); begin += kWindow, ++windows) {
-    const MatrixX3d x = Stacked(std::span(track).subspan(begin, kWindow));
-    const MatrixX3d g = Stacked(std::span(truth).subspan(begin, kWindow));
-    const Eigen::Index rows = 17 * static_cast<Eigen::Index>(fitted_frames);
-    sum += (moved(x, MatrixX3d(x.topRows(rows)), MatrixX3d(g.topRows(rows))) - g).rowwise().norm().mean();
-  }
-  return windows == 0 ? kNotMeasured : sum / windows;
-}
-
 /// Frames that both have, the track's scaled.
 struct Compared {
   std::vector<MatrixX3d> track, truth;
@@ -156,16 +138,12 @@ void MeasurePlaces(const Compared& both, RoomErrors* errors) {
   const MatrixX3d all_x = Stacked(x), all_g = Stacked(g);
   const Matrix3d yaw = YawBetween(all_x, all_g);
   errors->g_mpjpe_m = (all_x * yaw.transpose() - all_g).rowwise().norm().mean();
-  errors->w_mpjpe_m = WindowError(both.track, both.truth, kFirstFrames, MovedByYaw);
-  errors->wa_mpjpe_m = WindowError(both.track, both.truth, kWindow, MovedByYaw);
-  errors->w_mpjpe_100_m = WindowError(both.track, both.truth, kFirstFrames, MovedBySimilarity);
-  errors->wa_mpjpe_100_m = WindowError(both.track, both.truth, kWindow, MovedBySimilarity);
-  AlignmentOptions rigid;
-  rigid.estimate_scale = false;
-  const MatrixX3d moved = AlignPoints(hips, true_hips, rigid).target_from_source.Apply(hips);
-  const auto steps = static_cast<Eigen::Index>(T) - 1;
-  const double path = (true_hips.bottomRows(steps) - true_hips.topRows(steps)).rowwise().norm().sum();
-  errors->rte = path > 0 ? (moved - true_hips).rowwise().norm().mean() / path : kNotMeasured;
+  errors->w_mpjpe_m = WindowError(both.track, both.truth, kRoomFirstFrames, MovedByYaw);
+  errors->wa_mpjpe_m = WindowError(both.track, both.truth, kRoomWindow, MovedByYaw);
+  const GlobalErrors global = MeasureGlobalErrors(both.track, both.truth, hips, true_hips);
+  errors->w_mpjpe_100_m = global.w_mpjpe_100_m;
+  errors->wa_mpjpe_100_m = global.wa_mpjpe_100_m;
+  errors->rte = global.rte;
 
   double trunk = 0, lean = 0;
   for (size_t t = 0; t < T; ++t) {

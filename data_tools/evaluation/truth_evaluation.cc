@@ -28,14 +28,11 @@ MatrixX3d PosedJoints(const BodyModel& body, const MatrixX3d& rest_joints, const
       .joints;
 }
 
-/// Mean distance of the two shapes' vertices in the rest pose, pelvis on pelvis, metres.
-double ShapeError(const BodyModel& body, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  const auto centred = [&](const Eigen::VectorXd& betas) {
-    MatrixX3d vertices = ShapeVertices(body, betas);
-    vertices.rowwise() -= Eigen::RowVector3d(body.RestJoints(betas).row(0));
-    return vertices;
-  };
-  return (centred(a) - centred(b)).rowwise().norm().mean();
+/// The shape's vertices in the rest pose, with the pelvis at the origin.
+MatrixX3d CentredShape(const BodyModel& body, const Eigen::VectorXd& betas) {
+  MatrixX3d vertices = ShapeVertices(body, betas);
+  vertices.rowwise() -= Eigen::RowVector3d(body.RestJoints(betas).row(0));
+  return vertices;
 }
 
 }  // namespace
@@ -68,13 +65,14 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
   result.Add("pve_mm", vertices.position.mean * kMmPerMetre, "vertex error, pelvis aligned");
 
   const Motion& estimate = track.motion;
-  const MatrixX3d rest = body.RestJoints(estimate.betas), true_rest = body.RestJoints(truth.motion.betas);
+  const BodyModel& true_body = options.true_body != nullptr ? *options.true_body : body;
+  const MatrixX3d rest = body.RestJoints(estimate.betas), true_rest = true_body.RestJoints(truth.motion.betas);
   std::vector<MatrixX3d> joints(T), true_joints(T);
   RowMatrixXd poses(T, estimate.poses.cols());
   for (int t = 0; t < T; ++t) {
     poses.row(t) = estimate.poses.row(source[t]);
     joints[t] = PosedJoints(body, rest, estimate, source[t]);
-    true_joints[t] = PosedJoints(body, true_rest, truth.motion, t);
+    true_joints[t] = PosedJoints(true_body, true_rest, truth.motion, t);
   }
   const MatrixX3d roots = RootPositions(joints, {0}), true_roots = RootPositions(true_joints, {0});
   const std::vector<MatrixX3d> relative = RelativeTo(joints, roots),
@@ -109,7 +107,8 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
   result.Add("root_err_mm", root.distance.mean * kMmPerMetre, "pelvis error");
   result.Add("root_lateral_err_mm", root.lateral * kMmPerMetre, "its part across the viewing direction");
   result.Add("root_depth_err_mm", root.depth * kMmPerMetre, "its part in depth");
-  result.Add("shape_err_mm", ShapeError(body, estimate.betas, truth.motion.betas) * kMmPerMetre,
+  const MatrixX3d shape_difference = CentredShape(body, estimate.betas) - CentredShape(true_body, truth.motion.betas);
+  result.Add("shape_err_mm", shape_difference.rowwise().norm().mean() * kMmPerMetre,
              "vertex error of the shapes in the rest pose");
   result.Add("focal_err_percent", has_depth ? 100 * (track.camera.fx / truth.camera.fx - 1) : kNotMeasured,
              "focal length, estimated / true - 1");

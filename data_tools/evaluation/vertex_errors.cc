@@ -39,8 +39,12 @@ VertexErrors CompareVertices(const Track& track, const std::vector<int>& source,
   SkinnerOptions skinning;
   skinning.num_threads = options.num_threads;
   for (int v = 0; v < body.num_vertices(); v += options.vertex_step) skinning.vertices.push_back(v);
-  const Skinner skinner(body, skinning);
-  const ShapedBody shaped = skinner.Shape(track.motion.betas), true_shaped = skinner.Shape(truth.motion.betas);
+  const BodyModel& true_body = options.true_body != nullptr ? *options.true_body : body;
+  BODYLOOM_CHECK(true_body.num_vertices() == body.num_vertices() && true_body.num_joints() == body.num_joints(),
+                 "CompareVertices: the true body has ", true_body.num_vertices(), " vertices and ",
+                 true_body.num_joints(), " joints, expected ", body.num_vertices(), " and ", body.num_joints());
+  const Skinner skinner(body, skinning), true_skinner(true_body, skinning);
+  const ShapedBody shaped = skinner.Shape(track.motion.betas), true_shaped = true_skinner.Shape(truth.motion.betas);
 
   ProjectionErrorAccumulator projection(
       SquareImageScale(truth.camera.width, truth.camera.height, options.image_side_px));
@@ -52,12 +56,12 @@ VertexErrors CompareVertices(const Track& track, const std::vector<int>& source,
     for (int t = begin; t < end; ++t) {
       BODYLOOM_CHECK(source[t] >= 0 && source[t] < track.num_frames(), "CompareVertices: no frame ", source[t]);
       own.push_back(PoseOf(body, track.motion, source[t]));
-      true_own.push_back(PoseOf(body, truth.motion, t));
+      true_own.push_back(PoseOf(true_body, truth.motion, t));
       pelvis_offset.emplace_back(PoseSkeleton(body, shaped.rest_joints, own.back()).joints.row(0) -
-                                 PoseSkeleton(body, true_shaped.rest_joints, true_own.back()).joints.row(0));
+                                 PoseSkeleton(true_body, true_shaped.rest_joints, true_own.back()).joints.row(0));
     }
     const std::vector<MatrixX3d> vertices = SkinFrames(skinner, shaped, own);
-    const std::vector<MatrixX3d> true_vertices = SkinFrames(skinner, true_shaped, true_own);
+    const std::vector<MatrixX3d> true_vertices = SkinFrames(true_skinner, true_shaped, true_own);
     for (int t = begin; t < end; ++t) {
       const MatrixX3d &a = vertices[t - begin], &b = true_vertices[t - begin];
       projection.AddFrame(ProjectPoints(track.CameraAt(source[t]), a), ProjectPoints(truth.CameraAt(t), b));

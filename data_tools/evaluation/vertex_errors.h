@@ -16,6 +16,8 @@ struct VertexErrorOptions {
   int vertex_step = 1;      ///< every n-th vertex is compared (1: all); the mean moves by well under a percent up to 10
   int num_threads = 1;      ///< of skinning; the result is the same
   int image_side_px = 512;  ///< projection errors are for an image scaled to this by its longer side
+  /// Body of the truth, with the vertices and joints of the track's: another sex of one family. Null: the track's.
+  const BodyModel* true_body = nullptr;
 };
 
 struct VertexErrors {
@@ -25,7 +27,7 @@ struct VertexErrors {
 
 /// Compares frame source[t] of `track` with frame t of `truth`, t < source.size(), both posed on `body` in the camera
 /// frame. The image is the truth's (camera.width × height). Throws std::invalid_argument when a pose or shape does not
-/// fit the body, a frame is out of range, or vertex_step is below 1.
+/// fit the body, a frame is out of range, the bodies have different vertices or joints, or vertex_step is below 1.
 VertexErrors CompareVertices(const Track& track, const std::vector<int>& source, const Track& truth,
                              const BodyModel& body, const VertexErrorOptions& options = {});
 

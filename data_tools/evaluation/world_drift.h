@@ -8,11 +8,13 @@
 ///                    first two frames of every 100, by a similarity)
 ///   wa_mpjpe_mm      on all joints (WA-MPJPE)
 ///   root_drift_percent   mean distance of the pelvises after the latter, in percent of the true pelvis' path (RTE)
+///   w_mpjpe_100_mm, wa_mpjpe_100_mm, rte_percent   as EMDB defines them (global_errors.h)
 ///   foot_slide_mps   mean speed of the track's ankles in frames in which the true ones move at less than 0.1 m/s
 /// Frames without a result are left out.
 #pragma once
 
 #include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/global_errors.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/track.h"
 
@@ -22,10 +24,13 @@ struct WorldDrift {
   double w_mpjpe_m = 0, wa_mpjpe_m = 0;
   double root_drift = 0;      ///< a share; NaN if the true pelvis does not move
   double foot_slide_mps = 0;  ///< NaN if no true foot is stationary
+  GlobalErrors emdb;          ///< of all joints; roots: the pelvis
 };
 
-/// Both tracks on `body` and of the same frames (checked).
-WorldDrift MeasureWorldDrift(const Track& track, const Track& truth, const BodyModel& body);
+/// Both tracks on `body` (the truth on `true_body`, if it is another one with the same joints) and of the same frames
+/// (checked).
+WorldDrift MeasureWorldDrift(const Track& track, const Track& truth, const BodyModel& body,
+                             const BodyModel* true_body = nullptr);
 
 /// The same as entries of an evaluation.
 void AddWorldDrift(const WorldDrift& drift, Evaluation* evaluation);

@@ -403,7 +403,7 @@ void WriteTrack(const std::string& path, const Track& track) {
 Track TrackFromArrays(const NpzArrays& arrays, const std::string& where, MovingCamera moving) {
   Track track = TrackReader(arrays, where).Read();
   if (moving == MovingCamera::kRefuse && track.HasMovingCamera()) {
-    throw std::runtime_error(where + ": a track whose camera moves, which cannot be used here yet");
+    throw std::runtime_error(where + ": a track whose camera moves, expected one of a camera that stands still");
   }
   return track;
 }

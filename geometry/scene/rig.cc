@@ -29,4 +29,17 @@ Track TrackSeenBy(const RigCamera& camera, const BodyModel& body, const Track& t
   return seen;
 }
 
+Track WithStillCamera(const BodyModel& body, const Track& track) {
+  if (!track.HasMovingCamera()) return track;
+  RigCamera start;
+  start.camera = track.camera;
+  start.camera_from_rig = track.camera_from_scene.front();
+  start.offset_s = 0;
+  Track in_scene = track;
+  in_scene.camera_from_scene.clear();
+  Track seen = TrackSeenBy(start, body, in_scene);
+  seen.playback = track.playback;
+  return seen;
+}
+
 }  // namespace bodyloom

@@ -37,4 +37,8 @@ struct RigCamera {
 /// std::invalid_argument for a moving camera.
 Track TrackSeenBy(const RigCamera& camera, const BodyModel& body, const Track& track);
 
+/// The track as seen by a camera that stays where the track's is in its first frame, on the same clock: for a motion
+/// that is shown elsewhere than over its own video. A track of a static camera is returned unchanged.
+Track WithStillCamera(const BodyModel& body, const Track& track);
+
 }  // namespace bodyloom

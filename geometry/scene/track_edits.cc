@@ -183,35 +183,45 @@ Motion FramesOfMotion(const Motion& motion, int begin, int end) {
   return part;
 }
 
-Track FramesInOrder(const Track& track, std::span<const int> frames) {
+Track SelectFrames(const Track& track, std::span<const int> frames) {
   const int T = static_cast<int>(frames.size()), last = track.num_frames() - 1;
-  const std::vector<double>& times = track.motion.timestamps;
-  const double frame_s = last > 0 ? (times.back() - times.front()) / last : 1.0 / 30;
-  Track shown;
-  shown.camera = track.camera;
-  shown.world = track.world;
-  shown.motion.body = track.motion.body;
-  shown.motion.betas = track.motion.betas;
-  shown.motion.up = track.motion.up;
-  shown.motion.poses.resize(T, track.motion.poses.cols());
-  shown.motion.trans.resize(T, 3);
-  shown.weak_camera.resize(track.weak_camera.rows() > 0 ? T : 0, 3);
-  shown.joint_sigma.resize(track.joint_sigma.rows() > 0 ? T : 0, track.joint_sigma.cols());
-  shown.root_sigma.resize(track.root_sigma.size() > 0 ? T : 0);
+  const bool has_status = static_cast<int>(track.frame_status.size()) == last + 1;
+  Track selected;
+  selected.camera = track.camera;
+  selected.world = track.world;
+  selected.playback = track.playback;
+  selected.motion.body = track.motion.body;
+  selected.motion.betas = track.motion.betas;
+  selected.motion.up = track.motion.up;
+  selected.motion.poses.resize(T, track.motion.poses.cols());
+  selected.motion.trans.resize(T, 3);
+  selected.weak_camera.resize(track.weak_camera.rows() > 0 ? T : 0, 3);
+  selected.joint_sigma.resize(track.joint_sigma.rows() > 0 ? T : 0, track.joint_sigma.cols());
+  selected.root_sigma.resize(track.root_sigma.size() > 0 ? T : 0);
   for (int t = 0; t < T; ++t) {
     const int s = frames[t];
     BODYLOOM_CHECK(s >= 0 && s <= last, "frame ", s, " of a track of ", last + 1);
-    shown.motion.poses.row(t) = track.motion.poses.row(s);
-    shown.motion.trans.row(t) = track.motion.trans.row(s);
-    shown.motion.timestamps.push_back(times.front() + t * frame_s);
-    shown.frame_status.push_back(track.frame_status.at(s));
-    if (track.HasMovingCamera()) shown.camera_from_scene.push_back(track.camera_from_scene.at(s));
-    if (shown.weak_camera.rows() > 0) shown.weak_camera.row(t) = track.weak_camera.row(s);
-    if (shown.joint_sigma.rows() > 0) shown.joint_sigma.row(t) = track.joint_sigma.row(s);
-    if (shown.root_sigma.size() > 0) shown.root_sigma[t] = track.root_sigma[s];
-    if (!track.joints.empty()) shown.joints.push_back(track.joints.at(s));
-    if (!track.coco17.empty()) shown.coco17.push_back(track.coco17.at(s));
+    selected.motion.poses.row(t) = track.motion.poses.row(s);
+    selected.motion.trans.row(t) = track.motion.trans.row(s);
+    selected.motion.timestamps.push_back(track.motion.timestamps.at(s));
+    if (has_status) selected.frame_status.push_back(track.frame_status[s]);
+    if (track.HasMovingCamera()) selected.camera_from_scene.push_back(track.camera_from_scene.at(s));
+    if (selected.weak_camera.rows() > 0) selected.weak_camera.row(t) = track.weak_camera.row(s);
+    if (selected.joint_sigma.rows() > 0) selected.joint_sigma.row(t) = track.joint_sigma.row(s);
+    if (selected.root_sigma.size() > 0) selected.root_sigma[t] = track.root_sigma[s];
+    if (!track.joints.empty()) selected.joints.push_back(track.joints.at(s));
+    if (!track.coco17.empty()) selected.coco17.push_back(track.coco17.at(s));
   }
+  return selected;
+}
+
+Track FramesInOrder(const Track& track, std::span<const int> frames) {
+  Track shown = SelectFrames(track, frames);
+  const std::vector<double>& times = track.motion.timestamps;
+  const int last = track.num_frames() - 1;
+  const double frame_s = last > 0 ? (times.back() - times.front()) / last : 1.0 / 30;
+  for (int t = 0; t < shown.num_frames(); ++t) shown.motion.timestamps[t] = times.front() + t * frame_s;
+  shown.playback = {};
   return shown;
 }
 

@@ -64,6 +64,9 @@ std::pair<int, int> PosedSpan(const Motion& motion);
 /// The frames [begin, end) of a motion. Throws std::invalid_argument for frames out of range.
 Motion FramesOfMotion(const Motion& motion, int begin, int end);
 
+/// These frames of a track with their own timestamps. Throws std::invalid_argument for frames out of range.
+Track SelectFrames(const Track& track, std::span<const int> frames);
+
 // Frozen frames: time stops while the camera keeps moving ("bullet time").
 
 /// Order of `num_frames` frames in which each is shown in turn and `frame` `count` more times. Throws
@@ -71,7 +74,8 @@ Motion FramesOfMotion(const Motion& motion, int begin, int end);
 std::vector<int> FrozenAt(int num_frames, int frame, int count);
 
 /// The track's frames in that order, `1 / fps` apart with the track's mean rate, from its first timestamp on (a track
-/// of one frame: 30 per second). Throws std::invalid_argument for frames out of range.
+/// of one frame: 30 per second). A clock of its own, which no video's `playback` belongs to. Throws
+/// std::invalid_argument for frames out of range.
 Track FramesInOrder(const Track& track, std::span<const int> frames);
 
 }  // namespace bodyloom

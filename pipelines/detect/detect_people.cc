@@ -11,6 +11,7 @@
 #include "geometry/base/callbacks.h"
 #include "geometry/base/check.h"
 #include "geometry/base/prefetcher.h"
+#include "pipelines/detect/upright_people.h"
 #include "pipelines/files.h"
 #include "pipelines/video/track_video.h"
 #include "tracking/detection/people_between.h"
@@ -163,6 +164,8 @@ DetectedClip DetectOnce(const DetectPeopleRequest& request, const PipelineCallba
   for (const std::string& text : {source.note(), source.warning()}) {
     if (!text.empty()) callbacks.Message(text);
   }
+  const std::string advice = AdviceOnTurn(clip.people);
+  if (!advice.empty()) callbacks.Message(request.video + ": " + advice);
   return clip;
 }
 

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "data_tools/observations/keypoint_conventions.h"
 #include "data_tools/video/frame_image.h"
 #include "geometry/base/check.h"
+#include "pipelines/detect/upright_people.h"
 
 namespace bodyloom {
 namespace {
@@ -36,22 +35,6 @@ std::vector<Image> SpreadFrames(const DetectPeopleRequest& request) {
   return frames;
 }
 
-/// Confidence of the landmarks of the person's trunk if it is upright, else 0.
-double Uprightness(const DetectedPerson& person, const KeypointConvention& convention) {
-  const auto landmark = [&](const char* name) {
-    const auto at = std::find(convention.names.begin(), convention.names.end(), name);
-    BODYLOOM_CHECK(at != convention.names.end(), "landmarks of ", convention.name, " without ", name);
-    return person.points[size_t(at - convention.names.begin())];
-  };
-  const std::array<Keypoint, 4> trunk = {landmark("left_shoulder"), landmark("right_shoulder"), landmark("left_hip"),
-                                         landmark("right_hip")};
-  const double right = trunk[0].x + trunk[1].x - trunk[2].x - trunk[3].x;
-  const double up = trunk[2].y + trunk[3].y - trunk[0].y - trunk[1].y;
-  double confidence = 0;
-  for (const Keypoint& point : trunk) confidence += 0.25 * point.confidence;
-  return up > std::abs(right) ? confidence : 0;
-}
-
 }  // namespace
 
 int FindTurn(const DetectPeopleRequest& request, const PipelineCallbacks& callbacks) {
@@ -69,7 +52,8 @@ int FindTurn(const DetectPeopleRequest& request, const PipelineCallbacks& callba
       const Image turned = Oriented(frames[t], ClockwiseTurn(kTurns[i]));
       const std::vector<std::vector<FramePerson>> found = detector->Detect(std::span(&turned, 1));
       for (const FramePerson& person : found.front()) {
-        upright[i] += Uprightness(person.person, detector->convention());
+        const Trunk trunk = TrunkOf(person.person, detector->convention());
+        if (trunk.is_upright) upright[i] += trunk.confidence;
       }
     }
   }

@@ -18,6 +18,7 @@
 #include "data_tools/formats/npz.h"
 #include "data_tools/motion/amass.h"
 #include "data_tools/motion/bvh_writer.h"
+#include "data_tools/motion/motion_tools.h"
 #include "data_tools/motion/track_io.h"
 #include "geometry/base/check.h"
 #include "geometry/base/stopwatch.h"
@@ -184,21 +185,25 @@ ExportInputs CheckedInputs(const ExportTrackRequest& request, const BodyModel& b
   return inputs;
 }
 
-/// BVH and AMASS have a pose in every frame: frames before the first sight and after the last are left out, and one
-/// that is lost between them has no place.
+/// BVH and AMASS have a pose in every frame: frames before the first sight and after the last are left out, and those
+/// that are lost between them are interpolated.
 Motion MotionOfEveryFrame(const ExportInputs& inputs, const ExportTrackRequest& request, ExportTrackReport* report) {
   const Motion motion = inputs.MotionOfTrack();
   const auto [begin, end] = PosedSpan(motion);
   if (begin == end) throw std::runtime_error(request.tracks[0] + ": every frame is lost, there is nothing to write");
-  for (int t = begin; t < end; ++t) {
-    if (motion.HasPose(t)) continue;
-    throw std::runtime_error(Concatenate(request.tracks[0], ": frame ", t, " is lost, which ",
-                                         TrackFormNames()[size_t(request.form)],
-                                         " cannot say; glb, trc and c3d leave it out"));
-  }
   report->lost_before = begin;
   report->lost_after = motion.num_frames() - end;
-  return FramesOfMotion(motion, begin, end);
+  Motion filled = FramesOfMotion(motion, begin, end);
+  const std::vector<double>& times = filled.timestamps;
+  for (int t = 1, before = 0; t < filled.num_frames(); ++t) {
+    if (!filled.HasPose(t)) continue;
+    for (int lost = before + 1; lost < t; ++lost, ++report->lost_between) {
+      const double share = (times[lost] - times[before]) / (times[t] - times[before]);
+      InterpolateFrame(filled, before, t, share, lost, &filled);
+    }
+    before = t;
+  }
+  return filled;
 }
 
 GlbSummary ExportGlb(const ExportInputs& inputs, const ExportTrackRequest& request) {
@@ -296,6 +301,9 @@ TrackForm TrackFormFromString(const std::string& name) {
 std::string ToText(const ExportTrackReport& report) {
   std::string text;
   if (report.uses_world) text += "world    " + report.world.BriefReport() + "\n";
+  if (report.lost_between > 0) {
+    text += Concatenate("filled   ", report.lost_between, " lost frames by interpolation between their neighbours\n");
+  }
   if (report.lost_before + report.lost_after > 0) {
     text += Concatenate("left out ", report.lost_before, " frames before the first and ", report.lost_after,
                         " after the last that show the person\n");

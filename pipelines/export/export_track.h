@@ -47,10 +47,11 @@ struct ExportTrackRequest {
 };
 
 struct ExportTrackReport {
-  int num_frames = 0;   ///< of the first track
-  int lost_before = 0;  ///< kAmass, kBvh, kSmplx: frames left out before the first that shows the person
-  int lost_after = 0;   ///< and after the last
-  std::string out;      ///< what was written
+  int num_frames = 0;    ///< of the first track
+  int lost_before = 0;   ///< kAmass, kBvh, kSmplx: frames left out before the first that shows the person
+  int lost_after = 0;    ///< and after the last
+  int lost_between = 0;  ///< kAmass, kBvh, kSmplx: frames between the two that were interpolated
+  std::string out;       ///< what was written
   bool uses_world = false;
   WorldFrame world;  ///< where uses_world
   GlbSummary glb;    ///< kGlb

@@ -88,15 +88,15 @@ class AvatarAnimation {
       motion.track = clip_->track();
       motion.keeps_shape = true;  // the person's images come with their own
     } else {
-      motion.track = request_.motion != nullptr ? *request_.motion : ReadTrack(request_.track);
+      motion.track = request_.motion != nullptr ? *request_.motion : ReadTrack(request_.track, MovingCamera::kTake);
+    }
+    if (!request_.report.empty() && motion.track.camera.model != CameraModel::kPinhole) {
+      throw std::runtime_error(from + ": a track of a weakly perspective camera, expected a pinhole's for --report");
     }
     shown_.emplace(*avatar_, std::move(motion), threads_, callbacks_);
     if (clip_ && avatar_->file.garment) clip_->Wear({shown_->garment()});
     if (request_.report.empty()) return;
     const Track& track = shown_->track();
-    if (track.camera.model != CameraModel::kPinhole) {
-      throw std::runtime_error(from + ": a track of a weakly perspective camera, expected a pinhole's for --report");
-    }
     page_step_ = AvatarPage::FrameStep(track.num_frames(), avatar_->file.num_bones());
     page_.emplace(avatar_->file.body, avatar_->body->data().faces, shown_->CameraAt(0), EstimatedUp(track),
                   (track.num_frames() + page_step_ - 1) / page_step_);

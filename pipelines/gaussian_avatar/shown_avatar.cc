@@ -9,6 +9,7 @@
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/motion/motion_tools.h"
 #include "geometry/base/check.h"
+#include "geometry/scene/rig.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/animate/animation_limits.h"
 #include "pipelines/gaussian_avatar/train_avatar.h"
@@ -23,7 +24,7 @@ ShownAvatar::ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int nu
     callbacks.Message(avatar.run +
                       ": learned a network of the motion, which this version no longer has; shown without it");
   }
-  track_ = std::move(motion.track);
+  track_ = WithStillCamera(*avatar.body, motion.track);
   track_.camera.distortion = {};
   try {
     Pose(motion, callbacks);

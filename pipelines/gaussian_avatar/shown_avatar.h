@@ -40,10 +40,10 @@ struct ShownMotion {
 
 class ShownAvatar {
  public:
-  /// Shown without the distortion of the track's lens. Simulates the garment along the whole motion, which takes most
-  /// of the time. Keeps a reference to `avatar`. An avatar of an earlier version with a learned network of the motion
-  /// is shown without it, with a message. Throws std::runtime_error naming what cannot be used, RequestError for an
-  /// invalid view or freeze, Cancelled.
+  /// Shown without the distortion of the track's lens, by a camera that stands still (WithStillCamera). Simulates the
+  /// garment along the whole motion, which takes most of the time. Keeps a reference to `avatar`. An avatar of an
+  /// earlier version with a learned network of the motion is shown without it, with a message. Throws
+  /// std::runtime_error naming what cannot be used, RequestError for an invalid view or freeze, Cancelled.
   ShownAvatar(const LearnedAvatar& avatar, ShownMotion motion, int num_threads, const PipelineCallbacks& callbacks);
   ShownAvatar(const ShownAvatar&) = delete;
   ShownAvatar& operator=(const ShownAvatar&) = delete;

@@ -17,6 +17,7 @@
 #include "geometry/base/parallel.h"
 #include "geometry/base/percentile.h"
 #include "geometry/cloth/body_with_garment.h"
+#include "geometry/scene/rig.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/animate/animation_limits.h"
 #include "pipelines/animate/background.h"
@@ -51,7 +52,8 @@ class PersonAnimation {
 
   AnimatePersonSummary Run() {
     CheckRequest();
-    if (!request_.track.empty()) track_ = ReadTrack(request_.track);  // before the person, who takes longer to make
+    if (!request_.track.empty())
+      track_ = ReadTrack(request_.track, MovingCamera::kTake);  // before the person, who takes longer to make
     std::optional<ShownLight> light;
     if (!request_.relight.empty()) light = OtherLight(request_.relight);
     clock_.Begin("person");
@@ -123,7 +125,8 @@ class PersonAnimation {
 
   void OpenTrack() {
     try {
-      track_ = MovedByPerson(person_, track_, request_.own_stature ? PersonPlacing::kInScene : PersonPlacing::kInImage);
+      track_ = MovedByPerson(person_, WithStillCamera(*person_.body, track_),
+                             request_.own_stature ? PersonPlacing::kInScene : PersonPlacing::kInImage);
       if (!person_.garment.empty() && Draws()) cloth_.emplace(*person_.clothed, person_.garment, track_);
       if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
       int first = 0, last = track_.num_frames() - 1;

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "data_tools/body/body_io.h"
 #include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/video_truth.h"
 #include "data_tools/evaluation/aist_evaluation.h"
 #include "data_tools/evaluation/evaluation.h"
 #include "data_tools/evaluation/part_label_evaluation.h"
@@ -21,21 +23,38 @@
 #include "data_tools/evaluation/world_drift.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
+#include "data_tools/formats/pickle.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/observations/part_labels.h"
 #include "data_tools/observations/rig_io.h"
+#include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "geometry/scene/camera_path.h"
+#include "geometry/scene/track_edits.h"
 #include "pipelines/files.h"
 
 namespace bodyloom {
 namespace {
 
-/// Against another track, each frame as its camera saw it, and where the scenes drift apart.
-Evaluation EvaluateAgainstTrack(const Track& track, const Track& truth, const BodyModel& body) {
-  Evaluation evaluation = EvaluateAgainstTruth(TrackInCameras(body, track), TrackInCameras(body, truth), body);
+/// Against another track, each frame as its camera saw it, and where the scenes drift apart. Frames that the truth has
+/// lost are left out.
+Evaluation EvaluateAgainstTrack(const Track& given_track, const Track& given_truth, const BodyModel& body,
+                                const BodyModel* true_body = nullptr) {
+  std::vector<int> known;
+  for (int t = 0; t < given_truth.num_frames(); ++t) {
+    if (given_truth.HasResult(t)) known.push_back(t);
+  }
+  BODYLOOM_CHECK(!known.empty(), "the truth has lost every frame, there is nothing to compare with");
+  const bool selects =
+      int(known.size()) < given_truth.num_frames() && given_track.num_frames() == given_truth.num_frames();
+  const Track track = selects ? SelectFrames(given_track, known) : given_track;
+  const Track truth = selects ? SelectFrames(given_truth, known) : given_truth;
+  VertexErrorOptions options;
+  options.true_body = true_body;
+  Evaluation evaluation = EvaluateAgainstTruth(
+      TrackInCameras(body, track), TrackInCameras(true_body != nullptr ? *true_body : body, truth), body, options);
   if (track.HasMovingCamera() || truth.HasMovingCamera()) {
-    AddWorldDrift(MeasureWorldDrift(track, truth, body), &evaluation);
+    AddWorldDrift(MeasureWorldDrift(track, truth, body, true_body), &evaluation);
   }
   return evaluation;
 }
@@ -64,9 +83,30 @@ Evaluation EvaluateAgainstRigTrack(const EvaluateTrackRequest& request, const Tr
   }
 }
 
+/// Against a sequence of a data set of videos.
+Evaluation EvaluateAgainstVideoTruth(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
+                                     const PipelineCallbacks& callbacks) {
+  const PicklePtr file = ReadPickleFile(request.truth);
+  const VideoTruth truth = VideoTruthFromPickle(*file, request.true_person, request.truth);
+  std::optional<BodyModel> true_body;
+  if (!request.true_body.empty()) true_body = LoadBody(request.true_body);
+  RequireTrackFitsBody(truth.track, true_body ? *true_body : body, request.truth);
+  if (!true_body && truth.gender != "neutral") {
+    callbacks.Message(Concatenate(request.truth, ": of SMPL's ", truth.gender,
+                                  " body; without it as --true-body shapes and joints are those of '", body.name(),
+                                  "'"));
+  }
+  const Track at_times = FramesNearTimes(truth.track, track.motion.timestamps, request.truth);
+  Evaluation evaluation = EvaluateAgainstTrack(track, at_times, body, true_body ? &*true_body : nullptr);
+  evaluation.protocol = truth.dataset == "EMDB" ? "emdb" : "3dpw";
+  evaluation.subject = {{"sequence", truth.sequence}, {"gender", truth.gender}};
+  return evaluation;
+}
+
 /// Against a file: what kind of truth it is shows in what it holds. A true motion goes to `true_motion`.
 Evaluation EvaluateAgainstFile(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
-                               std::optional<Motion>* true_motion) {
+                               const PipelineCallbacks& callbacks, std::optional<Motion>* true_motion) {
+  if (request.truth.ends_with(".pkl")) return EvaluateAgainstVideoTruth(request, track, body, callbacks);
   const NpzArrays arrays = ReadNpz(request.truth);
   if (!HasPartLabels(arrays)) {
     Track truth = TrackFromArrays(arrays, request.truth, MovingCamera::kTake);
@@ -80,7 +120,7 @@ Evaluation EvaluateAgainstFile(const EvaluateTrackRequest& request, const Track&
 }
 
 Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track& in_scene, const BodyModel& body,
-                                std::optional<Motion>* true_motion) {
+                                const PipelineCallbacks& callbacks, std::optional<Motion>* true_motion) {
   namespace fs = std::filesystem;
   const fs::path truth = request.truth;
   if (request.truth.empty() && request.seen.empty()) return EvaluateAlone(in_scene);
@@ -90,7 +130,7 @@ Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track
                                     request.view);
   }
   if (!fs::is_directory(truth)) {
-    return EvaluateAgainstFile(request, in_scene, body, true_motion);
+    return EvaluateAgainstFile(request, in_scene, body, callbacks, true_motion);
   }
   if (fs::exists(truth / "keypoints2d")) {
     if (request.sequence.empty()) {
@@ -154,7 +194,11 @@ void CheckEvaluation(const EvaluateTrackRequest& request, const EvaluationInMemo
   }
   CheckEvaluationRig(request, given);
   for (const RigDetections& one : request.seen) RequireReadable(one.detections, "detections");
+  if ((!request.true_body.empty() || request.true_person != 0) && !request.truth.ends_with(".pkl")) {
+    throw RequestError("--true-body and --true-person are of a sequence of EMDB or 3DPW: give --truth FILE.pkl");
+  }
   RequireReadable(request.truth, "truth");
+  RequireReadable(request.true_body, "true body");
   RequireReadable(request.rig, "rig");
   RequireDistinct({request.truth, request.rig}, {request.json});
   RequireWritable(request.json);
@@ -166,9 +210,10 @@ Evaluation EvaluateChecked(const EvaluateTrackRequest& request, const BodyModel&
   callbacks.Update("measure", 0);
   std::optional<Motion> true_motion;
   if (given.truth != nullptr) true_motion = given.truth->motion;
-  Evaluation evaluation = HasRig(request, given)   ? EvaluateAgainstRigTrack(request, track, body, given, &true_motion)
-                          : given.truth != nullptr ? EvaluateAgainstTrack(track, *given.truth, body)
-                                                   : EvaluateAgainstFiles(request, track, body, &true_motion);
+  Evaluation evaluation = HasRig(request, given) ? EvaluateAgainstRigTrack(request, track, body, given, &true_motion)
+                          : given.truth != nullptr
+                              ? EvaluateAgainstTrack(track, *given.truth, body)
+                              : EvaluateAgainstFiles(request, track, body, callbacks, &true_motion);
   AddSurfaceMeasures(track, true_motion, body, callbacks, &evaluation);
   if (!request.json.empty()) {
     WriteFileAtomically(request.json, EvaluationJson(evaluation));

@@ -185,7 +185,7 @@ void CutToSpan(const TrackRequest& request, TrackInputs* inputs) {
   if (inputs->reference) {
     std::vector<int> frames(static_cast<size_t>(count));
     std::iota(frames.begin(), frames.end(), first);
-    inputs->reference = FramesInOrder(*inputs->reference, frames);
+    inputs->reference = SelectFrames(*inputs->reference, frames);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "data_tools/avatar/avatar_file.h"
 #include "data_tools/body_making/make_builtin_body.h"
+#include "data_tools/datasets/video_truth.h"
 #include "data_tools/estimates/hmr_readers.h"
 #include "data_tools/estimates/load_estimate.h"
 #include "data_tools/formats/zip.h"
@@ -171,6 +172,22 @@ inline bool AcceptsEstimate(const std::string& bytes) {
   WeightsFile file;
   for (const auto& [name, array] : FramedArrays(bytes)) file.tensors[name] = array;
   return Accepts([&] { CheckEstimate(GvhmrFromTensors(file, "fuzz.pt")); });
+}
+
+/// Sequences of EMDB and 3DPW.
+inline bool AcceptsVideoTruth(const std::string& bytes) {
+  return Accepts([&] {
+    const VideoTruth truth = VideoTruthFromPickle(*ReadPickle(bytes, "fuzz.pkl"), 0, "fuzz.pkl");
+    const Track& track = truth.track;
+    for (int t = 0; t < track.num_frames(); ++t) {
+      const bool is_lost = track.frame_status.at(size_t(t)) == FrameStatus::kLost;
+      if (track.motion.HasPose(t) == is_lost) throw std::logic_error("a pose that is no number, or of a lost frame");
+      if (!track.camera_from_scene.at(size_t(t)).camera_from_world_rotation.allFinite()) {
+        throw std::logic_error("a camera that is nowhere");
+      }
+    }
+    FramesNearTimes(track, {0.0}, "fuzz.pkl");
+  });
 }
 
 /// Files of detections of any format, with the person selected and missing times filled in.

@@ -9,6 +9,7 @@
 #include "data_tools/motion/resample_track.h"
 #include "data_tools/motion/track_io.h"
 #include "geometry/base/check.h"
+#include "geometry/scene/rig.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/animate/animation_limits.h"
 #include "pipelines/neural/motion/motion_data.h"
@@ -17,8 +18,9 @@
 namespace bodyloom {
 namespace {
 
-Track TrackOf(const AnimatedClipRequest& request, double fps, std::string* notes) {
-  Track track = request.data.empty() ? ReadTrack(request.track) : SinglePersonDataset(request.data).track();
+Track TrackOf(const AnimatedClipRequest& request, const BodyModel& body, double fps, std::string* notes) {
+  const Track track = request.data.empty() ? WithStillCamera(body, ReadTrack(request.track, MovingCamera::kTake))
+                                           : SinglePersonDataset(request.data).track();
   try {
     const bool at_rate = IsAtRate(track, fps);
     if (!at_rate) {
@@ -46,8 +48,8 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
     RequireRate(data_->track(), run.fps, request.data, "its track.npz as --track is shown at that rate");
     return;
   }
-  own_track_ = TrackOf(request, run.fps, &notes_);
   body_ = BodyOrBuiltin(request.body);
+  own_track_ = TrackOf(request, *body_, run.fps, &notes_);
   if (!request.shape_of_track) TakeShapeOf(run);
   const double size = PixelsPerMetre(*body_, *own_track_);
   if (!(size > 0)) {

@@ -12,6 +12,7 @@
 #include "data_tools/motion/track_io.h"
 #include "data_tools/video/image_file.h"
 #include "geometry/base/prefetcher.h"
+#include "geometry/scene/rig.h"
 #include "pipelines/animate/animation_limits.h"
 #include "pipelines/files.h"
 #include "pipelines/neural/person/scores_json.h"
@@ -97,7 +98,8 @@ class PhotoPersonAnimation : public FramePainter {
 
   void OpenMotion() {
     const bool of_data = !request_.data.empty();
-    track_ = of_data ? SinglePersonDataset(request_.data).track() : ReadTrack(request_.track);
+    track_ = of_data ? SinglePersonDataset(request_.data).track()
+                     : WithStillCamera(*photo().body, ReadTrack(request_.track, MovingCamera::kTake));
     maps_ = MapsOfMotion(request_, photo(), of_data ? request_.data : request_.track, renderer_->size(),
                          renderer_->texture_size(), &track_);
   }

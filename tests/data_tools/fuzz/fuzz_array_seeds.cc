@@ -19,6 +19,7 @@
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_writer.h"
+#include "tests/data_tools/datasets/video_truth_files.h"
 #include "tests/data_tools/estimates/estimate_files.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/fuzz/fuzz_targets.h"
@@ -202,6 +203,18 @@ std::vector<std::string> EstimateSeeds() {
           Inflate(PhalpFile({person}, 3), "seed.pkl", size_t{1} << 20), FrameArrays(gvhmr)};
 }
 
+/// Two people of two frames whose camera moves, in the form of either data set.
+std::vector<std::string> VideoTruthSeeds() {
+  Track track;
+  track.motion.poses = RowMatrixXd::Constant(2, 72, 0.1);
+  track.motion.trans = MatrixX3d::Constant(2, 3, 0.5);
+  track.motion.betas = Eigen::VectorXd::Zero(10);
+  track.camera = MakePinhole(640, 480, 800);
+  track.camera_from_scene.resize(2);
+  const std::vector<uint8_t> good = {1, 0};
+  return {EmdbPickle(track, good, "male"), ThreeDpwPickle({track, track}, {good, good})};
+}
+
 }  // namespace
 
 void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
@@ -224,6 +237,7 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   const std::vector<double> landmarks(2 * 33 * 2, 100);
   (*seeds)["detections_file"].push_back(NpyBytes(NdArray::FromDoubles(landmarks.data(), {2, 33, 2})));
   (*seeds)["estimate"] = EstimateSeeds();
+  (*seeds)["video_truth"] = VideoTruthSeeds();
   Image image(6, 4, {12, 200, 3});
   (*seeds)["image"] = {BytesOf("image.png", [&](const std::string& path) { WriteImage(path, image); }),
                        BytesOf("image.jpg", [&](const std::string& path) { WriteImage(path, image); })};

@@ -33,6 +33,7 @@ TEST(FuzzCorpus, LeftHalf) { RunMutations("left_half", AcceptsLeftHalf, 50); }
 TEST(FuzzCorpus, Motion) { RunMutations("motion", AcceptsMotion, 4000); }
 TEST(FuzzCorpus, DetectionsFile) { RunMutations("detections_file", AcceptsDetectionsFile, 4000); }
 TEST(FuzzCorpus, Estimate) { RunMutations("estimate", AcceptsEstimate, 4000); }
+TEST(FuzzCorpus, VideoTruth) { RunMutations("video_truth", AcceptsVideoTruth, 4000); }
 TEST(FuzzCorpus, Image) { RunMutations("image", AcceptsImage, 500); }
 TEST(FuzzCorpus, Video) { RunMutations("video", AcceptsVideo, 300); }
 TEST(FuzzCorpus, SinglePersonDataset) { RunMutations("single_person_dataset", AcceptsSinglePersonDataset, 1000); }

@@ -12,6 +12,7 @@
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/track.h"
+#include "tests/support/short_track.h"
 
 namespace bodyloom::rig_test {
 namespace {
@@ -72,6 +73,27 @@ TEST(TrackSeenBy, AMovingCameraIsRefused) {
   Track track = Seen();
   track.camera_from_scene.resize(size_t(track.num_frames()));
   EXPECT_THROW(TrackSeenBy(Other(), BuiltinBody(), track), std::invalid_argument);
+}
+
+TEST(WithStillCamera, TheMotionIsWhereItWasInTheWorld) {
+  Track moving = ShortTrack(6, SynthCameraMotion::kOrbit);
+  ASSERT_TRUE(moving.HasMovingCamera());
+  moving.world.emplace();
+  moving.world->rotation = RotationFromAxisAngle(Eigen::Vector3d(M_PI, 0.1, 0));
+  moving.world->translation = Eigen::Vector3d(0.2, 1.4, -0.3);
+  const Track still = WithStillCamera(BuiltinBody(), moving), in_cameras = TrackInCameras(BuiltinBody(), moving);
+  EXPECT_FALSE(still.HasMovingCamera());
+  EXPECT_EQ(still.motion.timestamps, moving.motion.timestamps);
+  EXPECT_LT((still.joints[0] - in_cameras.joints[0]).cwiseAbs().maxCoeff(), 1e-9) << "where the camera began";
+  EXPECT_GT((still.joints.back() - in_cameras.joints.back()).cwiseAbs().maxCoeff(), 0.05);
+  ASSERT_TRUE(still.world);
+  for (size_t t = 0; t < still.joints.size(); ++t) {
+    const MatrixX3d expected = moving.world->PointsFromCamera(moving.joints[t]);
+    EXPECT_LT((still.world->PointsFromCamera(still.joints[t]) - expected).cwiseAbs().maxCoeff(), 1e-9);
+  }
+  const Track same = WithStillCamera(BuiltinBody(), Seen());
+  EXPECT_EQ(same.motion.poses, Seen().motion.poses);
+  EXPECT_EQ(same.camera.fx, Seen().camera.fx);
 }
 
 }  // namespace

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_tools/datasets/video_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "data_tools/formats/printable.h"
+#include "geometry/base/check.h"
+#include "geometry/math/rotation.h"
+#include "geometry/scene/track_edits.h"
+
+namespace bodyloom {
+namespace {
+
+constexpr double kFps = 30;
+constexpr int64_t kMaxTruthFrames = 1'000'000;
+
+const PickleValue& RequireDict(const PickleValue& file, const std::string& key, const std::string& where) {
+  const PickleValue* value = file.Find(key);
+  if (value == nullptr || value->kind != PickleValue::Kind::kDict) {
+    throw std::runtime_error(where + ": " + key + ": expected a dictionary");
+  }
+  return *value;
+}
+
+std::string TextOf(const PickleValue* value) {
+  const bool is_text =
+      value != nullptr && (value->kind == PickleValue::Kind::kString || value->kind == PickleValue::Kind::kBytes);
+  return is_text && IsOneLine(value->text) && value->text.size() < 1000 ? value->text : "";
+}
+
+std::string GenderOf(const PickleValue* value) {
+  const std::string text = TextOf(value);
+  if (text == "m" || text == "male") return "male";
+  if (text == "f" || text == "female") return "female";
+  return "neutral";
+}
+
+/// Finite numbers of this shape; −1: any size.
+RowMatrixXd Numbers(const NdArray& array, const std::vector<int64_t>& shape, const std::string& place) {
+  bool fits = array.is_number() && array.shape.size() == shape.size();
+  std::string expected;
+  for (size_t d = 0; d < shape.size(); ++d) {
+    fits = fits && (shape[d] < 0 || array.shape[d] == shape[d]);
+    expected += (d == 0 ? "" : "x") + (shape[d] < 0 ? std::string("n") : std::to_string(shape[d]));
+  }
+  if (!fits) throw std::runtime_error(place + ": shape " + array.ShapeText() + ", expected " + expected);
+  const std::vector<double> values = array.ToDoubles();
+  const Eigen::Index rows = shape.size() == 1 ? 1 : array.shape[0];
+  const Eigen::Index columns = rows > 0 ? static_cast<Eigen::Index>(values.size()) / rows : 0;
+  RowMatrixXd matrix = Eigen::Map<const RowMatrixXd>(values.data(), rows, columns);
+  if (!matrix.allFinite()) throw std::runtime_error(place + ": holds NaN or infinite values, expected finite numbers");
+  return matrix;
+}
+
+RowMatrixXd Numbers(const PickleValue& file, const std::string& key, const std::vector<int64_t>& shape,
+                    const std::string& where) {
+  return Numbers(RequireNumbers(file, key, where), shape, where + ": " + key);
+}
+
+/// Entry `person` of a list of arrays.
+const NdArray& OfPerson(const PickleValue& file, const std::string& key, int person, const std::string& where) {
+  const PickleValue* list = file.Find(key);
+  const bool has = list != nullptr &&
+                   (list->kind == PickleValue::Kind::kList || list->kind == PickleValue::Kind::kTuple) &&
+                   size_t(person) < list->items.size() && list->items[size_t(person)] != nullptr &&
+                   list->items[size_t(person)]->kind == PickleValue::Kind::kArray;
+  if (!has)
+    throw std::runtime_error(Concatenate(where, ": ", key, ": expected a list with an array of person ", person));
+  return list->items[size_t(person)]->array;
+}
+
+void SetMotion(const RowMatrixXd& poses, const RowMatrixXd& trans, const RowMatrixXd& betas, Track* track) {
+  Motion& motion = track->motion;
+  motion.body = "smpl";
+  motion.up = Motion::Up::kCamera;
+  motion.poses = poses;
+  motion.trans = trans;
+  motion.betas = betas.row(0).transpose();
+  for (Eigen::Index t = 0; t < poses.rows(); ++t) motion.timestamps.push_back(double(t) / kFps);
+  track->frame_status.assign(size_t(poses.rows()), FrameStatus::kTracked);
+  track->weak_camera.resize(0, 3);
+}
+
+void SetIntrinsics(const RowMatrixXd& k, const std::string& place, Camera* camera) {
+  if (!(k(0, 0) > 0 && k(1, 1) > 0 && k(2, 2) == 1)) {
+    throw std::runtime_error(place + ": expected [fx 0 cx; 0 fy cy; 0 0 1] with focal lengths above 0");
+  }
+  camera->model = CameraModel::kPinhole;
+  camera->fx = k(0, 0), camera->fy = k(1, 1), camera->cx = k(0, 2), camera->cy = k(1, 2);
+}
+
+/// T×16 numbers, matrices row by row; rows that are no rigid motion make their frame lost.
+void SetCameraPath(const RowMatrixXd& rows, Track* track) {
+  constexpr double kNotRigid = 1e-3;
+  for (Eigen::Index t = 0; t < rows.rows(); ++t) {
+    const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(rows.row(t).data());
+    CameraPose pose{matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
+    if (!IsRotation(pose.camera_from_world_rotation, kNotRigid)) {
+      track->frame_status[size_t(t)] = FrameStatus::kLost;
+      pose = CameraPose();
+    }
+    track->camera_from_scene.push_back(pose);
+  }
+}
+
+/// Marks frames whose flag is 0 as lost.
+void LoseFrames(const NdArray& flags, const std::string& place, Track* track) {
+  const RowMatrixXd good = Numbers(flags, {track->num_frames()}, place);
+  for (int t = 0; t < track->num_frames(); ++t) {
+    if (good(0, t) == 0) track->frame_status[size_t(t)] = FrameStatus::kLost;
+  }
+}
+
+/// Lost frames have no pose.
+void ClearLostFrames(Track* track) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (int t = 0; t < track->num_frames(); ++t) {
+    if (track->frame_status[size_t(t)] != FrameStatus::kLost) continue;
+    track->motion.poses.row(t).setConstant(kNaN);
+    track->motion.trans.row(t).setConstant(kNaN);
+  }
+}
+
+int64_t RequireFrames(const NdArray& array, const std::string& place) {
+  const int64_t frames = array.shape.empty() ? 0 : array.shape[0];
+  if (frames < 1 || frames > kMaxTruthFrames) {
+    throw std::runtime_error(Concatenate(place, ": ", frames, " frames, expected 1 to ", kMaxTruthFrames));
+  }
+  return frames;
+}
+
+int WholeNumber(const PickleValue& file, const std::string& key, const std::string& where) {
+  const PickleValue* value = file.Find(key);
+  if (value == nullptr || value->kind != PickleValue::Kind::kInt || value->integer < 1 || value->integer > 100'000) {
+    throw std::runtime_error(where + ": " + key + ": expected a number of pixels");
+  }
+  return int(value->integer);
+}
+
+VideoTruth EmdbTruth(const PickleValue& file, const std::string& where) {
+  VideoTruth truth;
+  truth.dataset = "EMDB";
+  truth.sequence = TextOf(file.Find("name"));
+  truth.gender = GenderOf(file.Find("gender"));
+  const PickleValue& smpl = RequireDict(file, "smpl", where);
+  const PickleValue& camera = RequireDict(file, "camera", where);
+  const int64_t T = RequireFrames(RequireNumbers(smpl, "poses_root", where), where + ": poses_root");
+  RowMatrixXd poses(T, 72);
+  poses << Numbers(smpl, "poses_root", {T, 3}, where), Numbers(smpl, "poses_body", {T, 69}, where);
+  SetMotion(poses, Numbers(smpl, "trans", {T, 3}, where), Numbers(smpl, "betas", {-1}, where), &truth.track);
+  SetIntrinsics(Numbers(camera, "intrinsics", {3, 3}, where), where + ": intrinsics", &truth.track.camera);
+  truth.track.camera.width = WholeNumber(camera, "width", where);
+  truth.track.camera.height = WholeNumber(camera, "height", where);
+  SetCameraPath(Numbers(camera, "extrinsics", {T, 4, 4}, where), &truth.track);
+  LoseFrames(RequireNumbers(file, "good_frames_mask", where), where + ": good_frames_mask", &truth.track);
+  return truth;
+}
+
+VideoTruth ThreeDpwTruth(const PickleValue& file, int person, const std::string& where) {
+  VideoTruth truth;
+  truth.dataset = "3DPW";
+  truth.sequence = TextOf(file.Find("sequence"));
+  const PickleValue* genders = file.Find("genders");
+  const bool has_gender = genders != nullptr && size_t(person) < genders->items.size();
+  truth.gender = GenderOf(has_gender ? genders->items[size_t(person)].get() : nullptr);
+  truth.num_people = int(file.Find("poses")->items.size());
+  const NdArray& poses = OfPerson(file, "poses", person, where);
+  const int64_t T = RequireFrames(poses, where + ": poses");
+  RowMatrixXd betas = Numbers(OfPerson(file, "betas", person, where), {-1}, where + ": betas");
+  constexpr Eigen::Index kShapeComponents = 10;  // files hold up to 300, of which the public bodies have ten
+  betas = RowMatrixXd(betas.leftCols(std::min(betas.cols(), kShapeComponents)));
+  SetMotion(Numbers(poses, {T, 72}, where + ": poses"),
+            Numbers(OfPerson(file, "trans", person, where), {T, 3}, where + ": trans"), betas, &truth.track);
+  Camera& camera = truth.track.camera;
+  SetIntrinsics(Numbers(file, "cam_intrinsics", {3, 3}, where), where + ": cam_intrinsics", &camera);
+  camera.width = int(std::lround(2 * camera.cx)), camera.height = int(std::lround(2 * camera.cy));
+  if (camera.width < 1 || camera.height < 1 || camera.width > 100'000 || camera.height > 100'000) {
+    throw std::runtime_error(where + ": cam_intrinsics: a principal point outside any image");
+  }
+  SetCameraPath(Numbers(file, "cam_poses", {T, 4, 4}, where), &truth.track);
+  LoseFrames(OfPerson(file, "campose_valid", person, where), where + ": campose_valid", &truth.track);
+  return truth;
+}
+
+bool IsEmdb(const PickleValue& file) {
+  const PickleValue* smpl = file.Find("smpl");
+  return smpl != nullptr && smpl->Find("poses_root") != nullptr && file.Find("camera") != nullptr;
+}
+
+bool IsThreeDpw(const PickleValue& file) {
+  const PickleValue* poses = file.Find("poses");
+  return poses != nullptr && (poses->kind == PickleValue::Kind::kList || poses->kind == PickleValue::Kind::kTuple) &&
+         file.Find("cam_poses") != nullptr;
+}
+
+}  // namespace
+
+bool IsVideoTruth(const PickleValue& file) { return IsEmdb(file) || IsThreeDpw(file); }
+
+VideoTruth VideoTruthFromPickle(const PickleValue& file, int person, const std::string& where) {
+  BODYLOOM_CHECK(person >= 0, "person ", person, " must not be negative");
+  if (!IsVideoTruth(file)) {
+    throw std::runtime_error(where + ": expected EMDB's *_data.pkl or a sequence file of 3DPW");
+  }
+  const int people = IsEmdb(file) ? 1 : int(file.Find("poses")->items.size());
+  if (person >= people) {
+    throw std::runtime_error(Concatenate(where, ": ", people, " people, expected one with number ", person));
+  }
+  VideoTruth truth = IsEmdb(file) ? EmdbTruth(file, where) : ThreeDpwTruth(file, person, where);
+  ClearLostFrames(&truth.track);
+  return truth;
+}
+
+Track FramesNearTimes(const Track& truth, const std::vector<double>& times_s, const std::string& where) {
+  std::vector<int> frames;
+  for (const double time : times_s) {
+    const double frame = time * kFps;
+    if (!(std::abs(frame) < 1e9) || std::lround(frame) < 0 || std::lround(frame) >= truth.num_frames()) {
+      throw std::runtime_error(Concatenate(where, ": ", truth.num_frames(), " frames at ", kFps,
+                                           " a second, the track has one at ", time, " s"));
+    }
+    frames.push_back(int(std::lround(frame)));
+  }
+  return SelectFrames(truth, frames);
+}
+
+}  // namespace bodyloom
