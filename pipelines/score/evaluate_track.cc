@@ -80,13 +80,13 @@ Evaluation EvaluateAgainstFile(const EvaluateTrackRequest& request, const Track&
 }
 
 Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track& in_scene, const BodyModel& body,
-                                std::optional<Motion>* true_motion) {
+                                const PipelineCallbacks& callbacks, std::optional<Motion>* true_motion) {
   namespace fs = std::filesystem;
   const fs::path truth = request.truth;
   if (request.truth.empty() && request.seen.empty()) return EvaluateAlone(in_scene);
   const Track track = TrackInCameras(body, in_scene);  // what the other protocols compare
   if (!request.seen.empty()) {
-    return EvaluateTriangulatedClip(track, ReadRigClip(request.cameras, request.seen, request.view, track),
+    return EvaluateTriangulatedClip(track, ReadRigClip(request.cameras, request.seen, request.view, track, callbacks),
                                     request.view);
   }
   if (!fs::is_directory(truth)) {
@@ -166,9 +166,10 @@ Evaluation EvaluateChecked(const EvaluateTrackRequest& request, const BodyModel&
   callbacks.Update("measure", 0);
   std::optional<Motion> true_motion;
   if (given.truth != nullptr) true_motion = given.truth->motion;
-  Evaluation evaluation = HasRig(request, given)   ? EvaluateAgainstRigTrack(request, track, body, given, &true_motion)
-                          : given.truth != nullptr ? EvaluateAgainstTrack(track, *given.truth, body)
-                                                   : EvaluateAgainstFiles(request, track, body, &true_motion);
+  Evaluation evaluation = HasRig(request, given) ? EvaluateAgainstRigTrack(request, track, body, given, &true_motion)
+                          : given.truth != nullptr
+                              ? EvaluateAgainstTrack(track, *given.truth, body)
+                              : EvaluateAgainstFiles(request, track, body, callbacks, &true_motion);
   AddSurfaceMeasures(track, true_motion, body, callbacks, &evaluation);
   if (!request.json.empty()) {
     WriteFileAtomically(request.json, EvaluationJson(evaluation));

@@ -99,7 +99,7 @@ void UseDense(const std::string& path, const TrackRequest& request, TrackInputs*
 }
 
 /// 2D joints, and the dense keypoints that lie in the same file.
-void UseDetections(const TrackRequest& request, TrackInputs* inputs) {
+void UseDetections(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
   Camera& camera = inputs->camera.camera;
   const Holds holds = WhatItHolds(request.detections);
   if (holds.keypoints) {
@@ -111,7 +111,9 @@ void UseDetections(const TrackRequest& request, TrackInputs* inputs) {
     options.image_height = camera.height;
     options.min_confidence = request.min_confidence;
     options.convention = request.convention;
-    inputs->keypoints = LoadDetections(request.detections, options);
+    std::vector<std::string> warnings;
+    inputs->keypoints = LoadDetections(request.detections, options, &warnings);
+    for (const std::string& warning : warnings) callbacks.Message(warning);
     AgreeOnImageSize(request.detections, inputs->keypoints->image_width, inputs->keypoints->image_height, &camera);
   }
   if (holds.dense && request.dense.empty()) UseDense(request.detections, request, inputs);
@@ -173,7 +175,7 @@ TrackInputs LoadTrackInputs(const TrackRequest& request, const PipelineCallbacks
   if (given.keypoints != nullptr) {
     UseGivenKeypoints(request, *given.keypoints, &inputs);
   } else if (!request.detections.empty()) {
-    UseDetections(request, &inputs);
+    UseDetections(request, callbacks, &inputs);
   }
   if (!request.dense.empty()) {
     UseDense(request.dense, request, &inputs);
