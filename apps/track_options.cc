@@ -208,9 +208,11 @@ void AddOtherTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
       ->group(kSeen)
       ->check(Quiet(CLI::Range(0.0, 1.0)))
       ->capture_default_str();
-  app.add_option("--convention", c.convention, "landmark order of OpenPose files when it is not recognised")
+  app.add_option("--convention", c.convention,
+                 "landmark order of OpenPose files, arrays and VideoPose3D when it is not recognised")
       ->group(kSeen)
-      ->check(CLI::IsMember({"body25", "body25b", "openpose_coco18", "coco17", "halpe26"}));
+      ->check(CLI::IsMember({"body25", "body25b", "openpose_coco18", "coco17", "coco_wholebody23", "halpe26",
+                             "mediapipe33", "human36m17"}));
 
   AddDetectionOptions(app, request, "Detection (without the above, people are detected in --video)");
   AddCalibrationOptions(app, request);

@@ -15,6 +15,7 @@
 #include "geometry/base/check.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/python_callbacks.h"
 #include "python/track_object.h"
 
 namespace bodyloom::python {
@@ -25,7 +26,7 @@ constexpr const char* kKeypointsDoc = R"(2D joints of one person in every frame 
 points      (T, K, 3) float32: x and y in pixels (the top-left pixel's centre is 0, 0), confidence in [0, 1]; a
             joint is missing when its confidence is 0 or a coordinate is not finite
 names       the K joints' names, or a convention: "coco17", "body25", "body25b", "openpose_coco18",
-            "coco_wholebody23", "halpe26", "mediapipe33"
+            "coco_wholebody23", "halpe26", "mediapipe33", "human36m17"
 timestamps  (T,) seconds that grow; without them frame t is at t / fps
 image_size  (width, height) in pixels; (0, 0) when it is not known
 
@@ -33,10 +34,12 @@ Raises ValueError when shapes, names or times contradict each other.)";
 
 constexpr const char* kKeypointsLoadDoc = R"(The detections in a file or folder, recognised by what it holds.
 
-Read are OpenPose, COCO, AlphaPose, MMPose, MediaPipe, AIST++, FreeMoCap and this project's own .npz. `view` names
-the camera of a file that has several, `person` who is meant (0: the largest and longest in view), `fps` the frame
-rate of a file that does not say, `image_size` the images' size where it is known, `convention` OpenPose's model
-when it should not be recognised. Joints below `min_confidence` count as missing.
+Read are OpenPose, COCO, AlphaPose, MMPose, Ultralytics, easy_ViTPose, MediaPipe, DeepLabCut, AIST++, FreeMoCap,
+VideoPose3D, arrays of COCO's joints and this project's own .npz. `view` names the camera of a file that has several,
+`person` who is meant (0: the largest and longest in view), `fps` the frame rate of a file that does not say,
+`image_size` the images' size where it is known, `convention` the order of the joints of OpenPose, arrays and
+VideoPose3D when it should not be recognised. Joints below `min_confidence` count as missing. Broken files of a folder
+are frames without joints and logged to the logger "bodyloom".
 Raises RuntimeError naming the file, what was found and what was expected.)";
 
 std::vector<double> TimestampsFrom(const py::object& timestamps, double fps, py::ssize_t num_frames) {
@@ -87,7 +90,12 @@ std::shared_ptr<KeypointSequence> LoadKeypoints(const Path& path, const std::str
   std::tie(options.image_width, options.image_height) = image_size.value_or(std::pair(0, 0));
   options.min_confidence = min_confidence;
   options.convention = convention;
-  return std::make_shared<KeypointSequence>(LoadDetections(path.string(), options));
+  return PythonCallbacks(py::none()).Run([&](const PipelineCallbacks& callbacks) {
+    std::vector<std::string> warnings;
+    auto keypoints = std::make_shared<KeypointSequence>(LoadDetections(path.string(), options, &warnings));
+    for (const std::string& warning : warnings) callbacks.Message(warning);
+    return keypoints;
+  });
 }
 
 std::string KeypointsText(const KeypointSequence& keypoints) {
@@ -104,7 +112,7 @@ void BindKeypoints(py::module_& module) {
            py::arg("timestamps") = py::none(), py::arg("fps") = 30.0, py::arg("image_size") = std::pair(0, 0))
       .def_static("load", &LoadKeypoints, py::arg("path"), py::kw_only(), py::arg("view") = "", py::arg("person") = 0,
                   py::arg("fps") = py::none(), py::arg("image_size") = py::none(), py::arg("min_confidence") = 0.0,
-                  py::arg("convention") = "", py::call_guard<py::gil_scoped_release>(), kKeypointsLoadDoc)
+                  py::arg("convention") = "", kKeypointsLoadDoc)
       .def(
           "save",
           [](const KeypointSequence& self, const Path& path) { WriteObservations(path.string(), &self, nullptr); },

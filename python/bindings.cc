@@ -19,8 +19,7 @@ std::pair<std::string, std::vector<std::string>> ConventionFrom(const LandmarkNa
   }
   const std::string& wanted = std::get<std::string>(names);
   std::string all;
-  for (const KeypointConvention* convention :
-       {&Coco17(), &Body25(), &Body25B(), &OpenPoseCoco18(), &CocoWholeBody23(), &Halpe26(), &MediaPipe33()}) {
+  for (const KeypointConvention* convention : KnownConventions()) {
     if (convention->name == wanted) return {convention->name, convention->names};
     all += (all.empty() ? "" : ", ") + convention->name;
   }

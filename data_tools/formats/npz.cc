@@ -2,6 +2,7 @@
 #include "data_tools/formats/npz.h"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/element_type.h"
 #include "data_tools/formats/npy_header.h"
+#include "data_tools/formats/object_npy.h"
 #include "data_tools/formats/printable.h"
 #include "data_tools/formats/zip.h"
 
@@ -19,6 +21,7 @@ namespace {
 NdArray ParseNpy(std::string_view bytes, const std::string& where) {
   NpyHeader header = ParseNpyHeader(bytes, bytes.size(), where);
   if (!header.type) {
+    if (std::optional<NdArray> scalar = ScalarOfObjectNpy(bytes)) return *std::move(scalar);
     NdArray other;
     other.dtype = DType::kOther;
     other.item_size = 0;

@@ -2,9 +2,10 @@
 /// .npy and .npz files: numpy's array format and zip archives of it (stored or deflated, zip64).
 ///
 /// The reader checks every claim before allocating memory: header at most 64 KiB, shape product without overflow, size
-/// equal to the bytes present, deflate ratio at most 1100:1. Object arrays are never unpickled: in an archive they are
-/// kept as DType::kOther without contents (SMPL-X files contain some) and refused when requested. Members that are not
-/// arrays are skipped. Source: numpy/lib/format.py, APPNOTE.TXT.
+/// equal to the bytes present, deflate ratio at most 1100:1. An array of one Python object that is a number or text
+/// becomes that (nothing is executed: pickle.h). Other object arrays are not read: in an archive they are kept as
+/// DType::kOther without contents (SMPL-X files contain some) and refused when requested. Members that are not arrays
+/// are skipped. Source: numpy/lib/format.py, APPNOTE.TXT.
 #pragma once
 
 #include <map>

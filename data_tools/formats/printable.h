@@ -20,6 +20,14 @@ bool IsOneLine(std::string_view text);
 
 // Unicode code points to UTF-8 and back.
 
+/// U+FEFF in UTF-8, which some writers put at the start of a text file.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// The text without a byte-order mark at its start.
+inline std::string_view WithoutByteOrderMark(std::string_view text) {
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
+
 /// Appends one code point; invalid ones (surrogates, above U+10FFFF) become U+FFFD.
 void AppendUtf8(uint32_t code, std::string* text);
 

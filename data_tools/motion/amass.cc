@@ -26,7 +26,8 @@ double RateForReaders(const Motion& motion) {
 
 RowMatrixXd RequireMatrix(const NpzArrays& arrays, const std::string& key, const std::string& where) {
   const NdArray& array = RequireArray(arrays, key, where);
-  if (!array.is_number() || array.shape.size() != 2) {
+  const bool is_by_joint = array.shape.size() == 3 && array.shape[2] == 3;  // frames × joints × 3
+  if (!array.is_number() || (array.shape.size() != 2 && !is_by_joint)) {
     ThrowFileError(where, key, "shape " + array.ShapeText() + ", expected frames x values");
   }
   RowMatrixXd matrix = array.ToMatrix();
@@ -37,7 +38,7 @@ RowMatrixXd RequireMatrix(const NpzArrays& arrays, const std::string& key, const
 }
 
 double FrameRateOf(const NpzArrays& arrays, const std::string& where) {
-  for (const char* key : {"mocap_framerate", "mocap_frame_rate"}) {
+  for (const char* key : {"mocap_framerate", "mocap_frame_rate", "fps"}) {
     const auto found = arrays.find(key);
     if (found == arrays.end()) continue;
     if (!found->second.is_number() || found->second.num_elements() != 1)
@@ -46,7 +47,7 @@ double FrameRateOf(const NpzArrays& arrays, const std::string& where) {
     if (!(fps > 0 && fps < 1e5)) ThrowFileError(where, key, std::to_string(fps) + ", expected frames a second");
     return fps;
   }
-  throw std::runtime_error(where + ": neither 'mocap_framerate' nor 'mocap_frame_rate' nor 'timestamps'");
+  throw std::runtime_error(where + ": neither 'mocap_framerate' nor 'mocap_frame_rate' nor 'fps' nor 'timestamps'");
 }
 
 std::vector<double> TimestampsOf(const NpzArrays& arrays, int num_frames, const std::string& where) {
@@ -80,20 +81,60 @@ Motion::Up UpOf(const NpzArrays& arrays, const std::string& where) {
   return text[0] == "y" ? Motion::Up::kY : Motion::Up::kZ;
 }
 
-}  // namespace
-
-bool IsAmass(const NpzArrays& arrays) {
-  return arrays.find("poses") != arrays.end() && arrays.find("trans") != arrays.end();
-}
-
-Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where) {
-  const RowMatrixXd poses = RequireMatrix(arrays, "poses", where);
+/// `poses`, or the root and the body of files that have them in parts.
+RowMatrixXd PosesOf(const NpzArrays& arrays, const std::string& where) {
+  if (!arrays.contains("poses") && arrays.contains("root_orient")) {
+    const RowMatrixXd root = RequireMatrix(arrays, "root_orient", where),
+                      body = RequireMatrix(arrays, "pose_body", where);
+    if (root.cols() != 3 || body.cols() != kBodyColumns - 3 || root.rows() != body.rows()) {
+      ThrowFileError(where, Concatenate("root_orient and pose_body: ", root.rows(), "x", root.cols(), " and ",
+                                        body.rows(), "x", body.cols(), ", expected frames x 3 and frames x 63"));
+    }
+    RowMatrixXd poses(root.rows(), kBodyColumns);
+    poses << root, body;
+    return poses;
+  }
+  RowMatrixXd poses = RequireMatrix(arrays, "poses", where);
   const Eigen::Index columns = poses.cols();
-  if (columns != 72 && columns != 156 && columns != 162 && columns != 165) {
+  if (columns != kSmplColumns && columns != kSmplhColumns && columns != 162 && columns != kSmplxColumns) {
     ThrowFileError(where, "poses",
                    "shape " + RequireArray(arrays, "poses", where).ShapeText() +
                        ", expected 72 (SMPL), 156 (SMPL-H), 162 or 165 (SMPL-X) columns");
   }
+  return poses;
+}
+
+/// One shape for the clip: the only row, or the mean of one a frame, which `warnings` says if they differ.
+Eigen::VectorXd BetasOf(const NdArray& betas, Eigen::Index num_frames, const std::string& where,
+                        std::vector<std::string>* warnings) {
+  const bool is_rows = betas.shape.size() == 2 && (betas.shape[0] == 1 || betas.shape[0] == num_frames);
+  constexpr Eigen::Index kMaxBetas = 1000;
+  if (!betas.is_number() || (betas.shape.size() != 1 && !is_rows) || betas.shape.back() > kMaxBetas) {
+    ThrowFileError(where, "betas", "shape " + betas.ShapeText() + ", expected one shape for the clip, or one a frame");
+  }
+  const std::vector<double> values = betas.ToDoubles();
+  const Eigen::Index columns = betas.shape.back(), rows = is_rows ? betas.shape[0] : 1;
+  const Eigen::Map<const RowMatrixXd> table(values.data(), rows, columns);
+  if (!table.allFinite()) ThrowFileError(where, "betas", "not finite");
+  const Eigen::VectorXd first = table.row(0).transpose();
+  if ((table.rowwise() - first.transpose()).isZero(0)) return first;
+  if (warnings != nullptr) {
+    warnings->push_back(Concatenate(where, ": betas: a shape for each of ", rows,
+                                    " frames, of which the mean is taken; a motion has one"));
+  }
+  return table.colwise().mean().transpose();
+}
+
+}  // namespace
+
+bool IsAmass(const NpzArrays& arrays) {
+  return arrays.contains("trans") &&
+         (arrays.contains("poses") || (arrays.contains("root_orient") && arrays.contains("pose_body")));
+}
+
+Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where, std::vector<std::string>* warnings) {
+  const RowMatrixXd poses = PosesOf(arrays, where);
+  const Eigen::Index columns = poses.cols();
   if (poses.rows() == 0) ThrowFileError(where, "poses", "no frames");
   const RowMatrixXd trans = RequireMatrix(arrays, "trans", where);
   if (trans.rows() != poses.rows() || trans.cols() != 3) {
@@ -108,14 +149,7 @@ Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where) {
   motion.poses.leftCols(kept) = poses.leftCols(kept);
   motion.trans = trans;
   if (const auto found = arrays.find("betas"); found != arrays.end()) {
-    const NdArray& betas = found->second;
-    const bool is_row = betas.shape.size() == 2 && betas.shape[0] == 1;
-    if (!betas.is_number() || (betas.shape.size() != 1 && !is_row) || betas.num_elements() > 1000) {
-      ThrowFileError(where, "betas", "shape " + betas.ShapeText() + ", expected one shape for the clip");
-    }
-    const std::vector<double> values = betas.ToDoubles();
-    motion.betas = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-    if (!motion.betas.allFinite()) ThrowFileError(where, "betas", "not finite");
+    motion.betas = BetasOf(found->second, poses.rows(), where, warnings);
   }
   motion.timestamps = TimestampsOf(arrays, motion.num_frames(), where);
   motion.up = UpOf(arrays, where);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// AMASS motions (.npz): `poses` T×156 (SMPL-H), 165 or 162 (SMPL-X) or 72 (SMPL) axis-angle, `trans` T×3 metres,
 /// `betas`, `gender`, and the frame rate as `mocap_framerate` or, in the SMPL-X release, `mocap_frame_rate`. z up.
+/// Files that were written again may have `poses` T×J×3, the rate as `fps`, and `betas` T×B; in place of `poses`,
+/// `root_orient` T×3 and `pose_body` T×63.
 ///
 /// Columns 0–2 are the root, 3–65 SMPL's 21 body joints in every family; hands, jaw and eyes are left out and SMPL's
 /// two hand joints are zero. A file may deviate from AMASS: `timestamps` (T seconds) override the frame rate, `up_axis`
@@ -9,6 +11,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "data_tools/formats/npz.h"
 #include "geometry/scene/track.h"
@@ -16,9 +19,10 @@
 namespace bodyloom {
 
 bool IsAmass(const NpzArrays& arrays);
-/// Returns a motion of SMPL's 24 joints. Throws std::runtime_error naming `where`, the key, what it holds and what was
-/// expected.
-Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where);
+/// Returns a motion of SMPL's 24 joints. If each frame has a shape of its own, its betas are their mean, and
+/// `warnings`, when requested, gets a line. Throws std::runtime_error naming `where`, the key, what it holds and what
+/// was expected.
+Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where, std::vector<std::string>* warnings = nullptr);
 
 /// Writes the SMPL-H form (156 columns, z up) of a 24- or 52-joint motion; `rest_pelvis` is the body's pelvis joint at
 /// rest, about which the root turns. `timestamps` are written too. `betas` are the motion's if its body is SMPL or

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/object_npy.h"
 #include "data_tools/formats/pickle.h"
 #include "data_tools/formats/printable.h"
 #include "geometry/base/check.h"
@@ -16,18 +17,6 @@ namespace {
 using Kind = PickleValue::Kind;
 
 constexpr size_t kMaxJoints = 1000;
-
-/// Bytes before the pickle: magic, version, header length, header; 0 when this is no .npy with an object dtype.
-size_t ObjectNpyHeaderSize(const std::string& bytes) {
-  if (bytes.size() < 12 || bytes.compare(0, 6, "\x93NUMPY") != 0) return 0;
-  const auto byte = [&](size_t i) { return size_t{static_cast<unsigned char>(bytes[i])}; };
-  const bool is_version_1 = bytes[6] == 1;
-  const size_t begin = is_version_1 ? 10 : 12;
-  const size_t length = byte(8) + (byte(9) << 8) + (is_version_1 ? 0 : (byte(10) << 16) + (byte(11) << 24));
-  if (length > bytes.size() - begin || length > 65536) return 0;
-  const std::string header = bytes.substr(begin, length);
-  return header.find("'|O'") == std::string::npos ? 0 : begin + length;
-}
 
 const PickleValue& Require(const PickleValue& table, const std::string& key, Kind kind, const std::string& where) {
   const PickleValue* value = table.Find(key);
@@ -51,25 +40,10 @@ const NdArray& RequireArr(const PickleValue& table, const std::string& key, cons
   return array;
 }
 
-double NumberOf(const PickleValue* value) {
-  if (value == nullptr) return NAN;
-  if (value->kind == Kind::kInt) return static_cast<double>(value->integer);
-  if (value->kind == Kind::kFloat) return value->real;
-  if (value->kind == Kind::kArray && value->array.is_number() && value->array.num_elements() == 1) {
-    return value->array.ToDoubles()[0];
-  }
-  return NAN;
-}
-
 }  // namespace
 
-bool IsObjectNpy(const std::string& bytes) { return ObjectNpyHeaderSize(bytes) > 0; }
-
 SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& where) {
-  const size_t header = ObjectNpyHeaderSize(bytes);
-  if (header == 0) ThrowFileError(where, "not a .npy file of Python objects");
-  PicklePtr file = ReadPickle(bytes.substr(header), where);
-  while (file->kind == Kind::kList && file->items.size() == 1) file = file->items[0];  // the 0-d array of objects
+  const PicklePtr file = ReadObjectNpy(bytes, where);
   if (file->kind != Kind::kDict)
     ThrowFileError(where, "the pickled object is no dictionary, expected a SkeletonMotion");
 

@@ -12,8 +12,6 @@
 
 namespace bodyloom {
 
-/// Returns true if the bytes are a .npy of Python objects.
-bool IsObjectNpy(const std::string& bytes);
 /// Throws std::runtime_error naming `where`, the key, what it holds and what was expected.
 SkeletonMotion AmpFromNpyBytes(const std::string& bytes, const std::string& where);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/motion/bvh_reader.h"
 
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 
 #include "data_tools/formats/printable.h"
 #include "data_tools/motion/text_scanner.h"
+#include "geometry/base/check.h"
 #include "geometry/base/units.h"
 #include "geometry/math/rotation.h"
 
@@ -21,9 +23,11 @@ struct Channel {
 };
 
 Channel ChannelFromName(TextScanner* scanner, std::string_view name, int joint) {
-  const bool is_rotation = name.size() == 9 && name.substr(1) == "rotation";
-  const bool is_position = name.size() == 9 && name.substr(1) == "position";
-  const int axis = name.empty() ? -1 : name[0] == 'X' ? 0 : name[0] == 'Y' ? 1 : name[0] == 'Z' ? 2 : -1;
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const bool is_rotation = lower.size() == 9 && lower.ends_with("rotation");
+  const bool is_position = lower.size() == 9 && lower.ends_with("position");
+  const int axis = lower.empty() ? -1 : lower[0] == 'x' ? 0 : lower[0] == 'y' ? 1 : lower[0] == 'z' ? 2 : -1;
   if (axis < 0 || !(is_rotation || is_position)) {
     scanner->Fail("found channel '" + PrintableText(name) + "', expected [XYZ]rotation or [XYZ]position");
   }
@@ -92,12 +96,27 @@ Hierarchy ReadHierarchy(TextScanner* scanner) {
   return h;
 }
 
+/// The number of frames that the rest of the text has, whatever its header says, with a warning if they differ. A last
+/// frame that is not whole, or whose last number may be cut, is left out.
+int FramesPresent(const TextScanner& scanner, int stated, size_t num_channels, const std::string& where,
+                  std::vector<std::string>* warnings) {
+  const size_t words = scanner.CountWords();
+  size_t frames = words / num_channels;
+  if (frames > 0 && frames < size_t(stated) && words % num_channels == 0 && scanner.EndsInWord()) --frames;
+  if (frames == 0) scanner.Fail("no whole frame of " + std::to_string(num_channels) + " channels");
+  if (frames > kMaxRotations) scanner.Fail(std::to_string(frames) + " frames are too many");
+  if (frames != size_t(stated) && warnings != nullptr) {
+    warnings->push_back(
+        Concatenate(where, ": ", frames, " whole frames, the header says ", stated, "; those that are there are read"));
+  }
+  return static_cast<int>(frames);
+}
+
 }  // namespace
 
-SkeletonMotion ReadBvh(const std::string& path) { return BvhFromText(ReadTextFile(path), path); }
-
-SkeletonMotion BvhFromText(const std::string& text, const std::string& where) {
+SkeletonMotion BvhFromText(const std::string& text, const std::string& where, std::vector<std::string>* warnings) {
   TextScanner scanner(text, where);
+  scanner.IgnoreCase();
   Hierarchy h = ReadHierarchy(&scanner);
   SkeletonMotion& motion = h.skeleton;
   const int J = motion.num_joints();
@@ -105,22 +124,18 @@ SkeletonMotion BvhFromText(const std::string& text, const std::string& where) {
   for (int j = 0; j < J; ++j) motion.offsets.row(j) = h.offsets[j].transpose();
 
   scanner.Expect("MOTION");
-  scanner.Expect("Frames:");
-  const int num_frames = scanner.Integer("a number of frames", 1, static_cast<int>(kMaxRotations));
+  if (!scanner.AcceptPrefix("Frames:")) scanner.Expect("Frames:");
+  const int stated = scanner.Integer("a number of frames", 0, static_cast<int>(kMaxRotations));
   scanner.Expect("Frame");
-  scanner.Expect("Time:");
+  if (!scanner.AcceptPrefix("Time:")) scanner.Expect("Time:");
   const double frame_time = scanner.Number("a frame time");
   if (!(frame_time > 0 && frame_time < kSlowestFrame)) {
     scanner.Fail("frame time " + std::to_string(frame_time) + " s, expected more than 0 and less than 10");
   }
-  // Every number takes two bytes at least: a claim that the file cannot hold is refused before memory is taken.
   const size_t num_channels = h.channels.size();
   if (num_channels == 0) scanner.Fail("no joint has channels");
+  const int num_frames = FramesPresent(scanner, stated, num_channels, where, warnings);
   if (size_t(num_frames) * J > kMaxRotations) scanner.Fail(std::to_string(num_frames) + " frames are too many");
-  if (size_t(num_frames) * num_channels > scanner.remaining_bytes() / 2 + 1) {
-    scanner.Fail(std::to_string(num_frames) + " frames of " + std::to_string(num_channels) +
-                 " channels are more than the rest of the file can hold");
-  }
   motion.rotations.assign(size_t(num_frames) * J, Eigen::Matrix3d::Identity());
   motion.root_positions = motion.offsets.row(0).replicate(num_frames, 1);
   motion.timestamps = RegularTimestamps(num_frames, frame_time);
@@ -135,11 +150,9 @@ SkeletonMotion BvhFromText(const std::string& text, const std::string& where) {
       }
     }
   }
-  if (!scanner.AtEnd()) {
-    scanner.Fail("found '" + PrintableText(scanner.Peek()) + "' after the last of " + std::to_string(num_frames) +
-                 " frames, expected the end of the file");
-  }
   return motion;
 }
+
+SkeletonMotion ReadBvh(const std::string& path) { return BvhFromText(ReadTextFile(path), path); }
 
 }  // namespace bodyloom

@@ -7,6 +7,7 @@
 
 #include "data_tools/formats/json_reader.h"
 #include "data_tools/formats/npz.h"
+#include "data_tools/formats/object_npy.h"
 #include "data_tools/formats/pickle.h"
 #include "data_tools/motion/aist_motion.h"
 #include "data_tools/motion/amass.h"
@@ -31,11 +32,12 @@ bool HasExtension(const std::string& path, const std::string& extension) {
 
 /// Skeletons and their motions; nullopt-like: false when the text is none of them.
 bool SkeletonFromText(const std::string& text, const std::string& path, const LoadMotionOptions& options,
-                      SkeletonMotion* skeleton) {
+                      std::vector<std::string>* warnings, SkeletonMotion* skeleton) {
   TextScanner scanner(text, path);
   const std::string first(scanner.Peek().substr(0, 64));
-  if (first == "HIERARCHY") {
-    *skeleton = BvhFromText(text, path);
+  scanner.IgnoreCase();
+  if (scanner.Accept("HIERARCHY")) {
+    *skeleton = BvhFromText(text, path, warnings);
     return true;
   }
   if (HasExtension(path, ".asf")) {
@@ -56,12 +58,14 @@ bool SkeletonFromText(const std::string& text, const std::string& path, const Lo
 }
 
 Motion ReadBytes(const std::string& bytes, const std::string& path, const LoadMotionOptions& options,
-                 RetargetSummary* summary) {
+                 RetargetSummary* summary, std::vector<std::string>* warnings) {
   if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpectedMotion);
   if (bytes.compare(0, 4, "PK\x03\x04") == 0) {
     const NpzArrays arrays = ReadNpzBytes(bytes, path);
-    if (!IsAmass(arrays)) throw std::runtime_error(path + ": an .npz without 'poses' and 'trans'; " + kExpectedMotion);
-    return AmassFromNpz(arrays, path);
+    if (!IsAmass(arrays))
+      throw std::runtime_error(path + ": an .npz without 'trans' and 'poses' (or 'root_orient' and 'pose_body'); " +
+                               kExpectedMotion);
+    return AmassFromNpz(arrays, path, warnings);
   }
   if (IsObjectNpy(bytes)) return RetargetToSmpl(AmpFromNpyBytes(bytes, path), path, summary);
   if (bytes[0] == '\x80' || bytes.compare(0, 2, "(d") == 0) {
@@ -70,22 +74,23 @@ Motion ReadBytes(const std::string& bytes, const std::string& path, const LoadMo
     return AistMotionFromPickle(*file, path, options.fps > 0 ? options.fps : kAistFps);
   }
   SkeletonMotion skeleton;
-  if (SkeletonFromText(bytes, path, options, &skeleton)) return RetargetToSmpl(skeleton, path, summary);
+  if (SkeletonFromText(bytes, path, options, warnings, &skeleton)) return RetargetToSmpl(skeleton, path, summary);
   throw std::runtime_error(path + ": unknown kind of file; " + kExpectedMotion);
 }
 
 }  // namespace
 
 Motion MotionFromBytes(const std::string& bytes, const std::string& where, const LoadMotionOptions& options,
-                       RetargetSummary* summary) {
+                       RetargetSummary* summary, std::vector<std::string>* warnings) {
   BODYLOOM_CHECK(options.fps >= 0 && options.resample_fps >= 0, "frame rates ", options.fps, " and ",
                  options.resample_fps, " must not be negative");
-  const Motion motion = ReadBytes(bytes, where, options, summary);
+  const Motion motion = ReadBytes(bytes, where, options, summary, warnings);
   return options.resample_fps > 0 ? ResampleMotion(motion, options.resample_fps) : motion;
 }
 
-Motion LoadMotion(const std::string& path, const LoadMotionOptions& options, RetargetSummary* summary) {
-  return MotionFromBytes(ReadTextFile(path), path, options, summary);
+Motion LoadMotion(const std::string& path, const LoadMotionOptions& options, RetargetSummary* summary,
+                  std::vector<std::string>* warnings) {
+  return MotionFromBytes(ReadTextFile(path), path, options, summary, warnings);
 }
 
 }  // namespace bodyloom

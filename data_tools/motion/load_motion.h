@@ -6,6 +6,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "data_tools/motion/retarget.h"
 #include "geometry/scene/track.h"
@@ -18,12 +19,14 @@ struct LoadMotionOptions {
   double resample_fps = 0;    ///< when positive, the motion is resampled to it
 };
 
-/// Throws std::runtime_error in one line: what was found and what was expected. `summary`, when given, is filled for
-/// retargeted skeletons.
-Motion LoadMotion(const std::string& path, const LoadMotionOptions& options = {}, RetargetSummary* summary = nullptr);
+/// `summary`, when given, is filled for retargeted skeletons; `warnings`, when requested, gets a line for each fault
+/// that was passed over (bvh_reader.h, amass.h). Throws std::runtime_error in one line: what was found and what was
+/// expected.
+Motion LoadMotion(const std::string& path, const LoadMotionOptions& options = {}, RetargetSummary* summary = nullptr,
+                  std::vector<std::string>* warnings = nullptr);
 
 /// The same for the contents of a file; `where` is its path (an .amc finds its skeleton by it).
 Motion MotionFromBytes(const std::string& bytes, const std::string& where, const LoadMotionOptions& options = {},
-                       RetargetSummary* summary = nullptr);
+                       RetargetSummary* summary = nullptr, std::vector<std::string>* warnings = nullptr);
 
 }  // namespace bodyloom

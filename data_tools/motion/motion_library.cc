@@ -82,8 +82,8 @@ void SetRate(double fps, Motion* motion) {
 
 /// The clips of one file. Throws std::runtime_error when it holds none.
 std::vector<LibraryClip> ClipsOf(const std::string& file, const std::string& name, const MotionSplit& split,
-                                 const MotionLibraryOptions& options) {
-  Motion motion = LoadMotion(file);
+                                 const MotionLibraryOptions& options, std::vector<std::string>* warnings) {
+  Motion motion = LoadMotion(file, {}, nullptr, warnings);
   if (motion.up == Motion::Up::kCamera) {
     throw std::runtime_error(file + ": a track in a camera's frame, expected a motion that knows which way is up");
   }
@@ -153,7 +153,7 @@ MotionLibrarySummary VisitMotionLibrary(const std::vector<std::string>& folders,
       const std::string name = NameBelow(folder, file);
       std::vector<LibraryClip> clips;
       try {
-        clips = ClipsOf(file, name, split, options);
+        clips = ClipsOf(file, name, split, options, &summary.warnings);
       } catch (const std::runtime_error& error) {  // licences, skeletons and readmes are among the motions
         const std::string reason = error.what(), prefix = file + ": ";
         summary.left_out.emplace_back(name, reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason);

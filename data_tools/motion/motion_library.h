@@ -53,6 +53,7 @@ struct MotionLibrarySummary {
   std::map<std::string, double> train_seconds_by_class, test_seconds_by_class;
   std::vector<std::string> unnamed;  ///< clips the split does not name: training, class "other"
   std::vector<std::pair<std::string, std::string>> left_out;  ///< file below its folder, one line of reason
+  std::vector<std::string> warnings;                          ///< faults that LoadMotion() passed over
 };
 
 /// Visits the clips in turn, folders in the given order, files sorted by name; one recording is in memory at a time. A

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/motion/text_scanner.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -13,6 +15,13 @@ namespace bodyloom {
 namespace {
 
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
+
+bool AreEqual(std::string_view a, std::string_view b, bool ignores_case) {
+  const auto same = [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
+  };
+  return ignores_case ? std::equal(a.begin(), a.end(), b.begin(), b.end(), same) : a == b;
+}
 
 }  // namespace
 
@@ -50,7 +59,7 @@ std::string_view TextScanner::Word(const std::string& expected) {
 }
 
 void TextScanner::Expect(std::string_view word) {
-  if (Peek() != word) {
+  if (!AreEqual(Peek(), word, ignores_case_)) {
     const std::string found = PrintableText(Peek());
     Fail(found.empty() ? "the file ends, expected '" + std::string(word) + "'"
                        : "found '" + found + "', expected '" + std::string(word) + "'");
@@ -59,10 +68,30 @@ void TextScanner::Expect(std::string_view word) {
 }
 
 bool TextScanner::Accept(std::string_view word) {
-  if (Peek() != word) return false;
+  if (!AreEqual(Peek(), word, ignores_case_)) return false;
   Word("");
   return true;
 }
+
+bool TextScanner::AcceptPrefix(std::string_view prefix) {
+  if (!AreEqual(Peek().substr(0, prefix.size()), prefix, ignores_case_)) return false;
+  next_ += prefix.size();
+  peeked_ = {};
+  return true;
+}
+
+size_t TextScanner::CountWords() const {
+  size_t count = 0;
+  bool in_word = false;
+  for (size_t i = next_; i < text_.size(); ++i) {
+    const bool is_word = !IsSpace(text_[i]);
+    count += is_word && !in_word ? 1 : 0;
+    in_word = is_word;
+  }
+  return count;
+}
+
+bool TextScanner::EndsInWord() const { return !text_.empty() && !IsSpace(text_.back()); }
 
 double TextScanner::Number(const std::string& expected) {
   const std::string_view word = Word(expected);

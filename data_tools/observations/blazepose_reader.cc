@@ -2,12 +2,12 @@
 #include "data_tools/observations/blazepose_reader.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
 #include "data_tools/formats/printable.h"
 #include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/landmark_names.h"
 
 namespace bodyloom {
 namespace {
@@ -31,7 +31,8 @@ bool IsNamedTable(const JsonNode& node) {
 bool IsPointList(const JsonNode& node) {
   if (!node.is_array() || node.size() == 0) return false;
   const JsonNode first = node.At(0);
-  return first.Has("x") || (first.is_array() && first.size() >= 2 && first.At(0).is_number());
+  return first.Has("x") ||
+         (first.is_array() && first.size() >= 2 && (first.At(0).is_number() || first.At(0).is_null()));
 }
 
 bool IsPerson(const JsonNode& node) { return ListKey(node) != nullptr || IsNamedTable(node) || IsPointList(node); }
@@ -44,22 +45,14 @@ bool IsFrame(const JsonNode& node) {
   return IsPerson(node) || (node.is_array() && node.size() > 0 && IsPerson(node.At(0)));
 }
 
-/// "LEFT_FOOT_INDEX" → "left_big_toe": lower case, in the body's vocabulary.
-std::string LandmarkName(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (name == "left_foot_index") return "left_big_toe";
-  if (name == "right_foot_index") return "right_big_toe";
-  return name;
-}
-
 Keypoint PointFromJson(const JsonNode& node) {
   if (node.is_array()) {
-    const std::vector<double> values = node.Numbers();
+    const std::vector<double> values = node.NumbersOrNan();
     if (values.size() < 2 || values.size() > 5) node.Fail("[x, y], [x, y, z] or [x, y, z, visibility]");
     return {static_cast<float>(values[0]), static_cast<float>(values[1]),
             values.size() >= 4 ? static_cast<float>(values[3]) : 1.0F};
   }
-  Keypoint point{static_cast<float>(node.At("x").Number()), static_cast<float>(node.At("y").Number()), 1.0F};
+  Keypoint point{static_cast<float>(node.At("x").NumberOrNan()), static_cast<float>(node.At("y").NumberOrNan()), 1.0F};
   for (const char* key : {"score", "visibility", "confidence"}) {
     if (node.Has(key) && !node.At(key).is_null()) point.confidence = static_cast<float>(node.At(key).Number());
   }
@@ -79,7 +72,7 @@ DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention& co
   }
   person.points.resize(convention.names.size());
   for (const std::string& name : node.Keys()) {
-    const auto found = std::find(convention.names.begin(), convention.names.end(), LandmarkName(name));
+    const auto found = std::find(convention.names.begin(), convention.names.end(), LandmarkNameFrom(name));
     if (found == convention.names.end()) {
       throw std::runtime_error(node.place() + ": landmark '" + PrintableText(name) + "' is not one of " +
                                convention.name);
@@ -99,7 +92,7 @@ const KeypointConvention& ConventionOf(const JsonNode& person) {
                              " landmarks, expected 33 (BlazePose) or 17 (COCO)");
   }
   for (const std::string& name : person.Keys()) {
-    if (std::find(Coco17().names.begin(), Coco17().names.end(), LandmarkName(name)) == Coco17().names.end()) {
+    if (std::find(Coco17().names.begin(), Coco17().names.end(), LandmarkNameFrom(name)) == Coco17().names.end()) {
       return MediaPipe33();
     }
   }

@@ -3,17 +3,34 @@
 
 #include <map>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "data_tools/observations/frame_numbers.h"
 
 namespace bodyloom {
 namespace {
 
-int64_t FrameNumber(const JsonNode& id) {
-  if (id.is_number()) return id.Integer();
-  const int64_t number = FrameNumberFromName(id.Text());
-  if (number < 0) id.Fail("a number or a file name with a number");
-  return number;
+/// The frame numbers of entries' or images' names at `key`, each a number or a file name. −1 where a file name has no
+/// number.
+std::vector<int64_t> FrameNumbersAt(const JsonNode& list, const char* key) {
+  std::vector<int64_t> numbers(list.size(), -1);
+  std::vector<std::string> names;
+  std::vector<size_t> named;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const JsonNode entry = list.At(i);
+    if (!entry.Has(key)) continue;
+    const JsonNode id = entry.At(key);
+    if (id.is_number()) {
+      numbers[i] = id.Integer();
+    } else {
+      names.push_back(id.Text());
+      named.push_back(i);
+    }
+  }
+  const std::vector<int64_t> from_names = FrameNumbersFromNames(names);
+  for (size_t n = 0; n < named.size(); ++n) numbers[named[n]] = from_names[n];
+  return numbers;
 }
 
 /// Confidence of an annotation's visibility flag.
@@ -45,11 +62,11 @@ PeopleSequence CocoFromJson(const JsonNode& document, double fps) {
   PeopleSequence people;
   if (is_annotation && document.Has("images")) {
     const JsonNode images = document.At("images");
+    const std::vector<int64_t> file_numbers = FrameNumbersAt(images, "file_name");
     for (size_t i = 0; i < images.size(); ++i) {
       const JsonNode image = images.At(i);
       const int64_t id = image.At("id").Integer();
-      const int64_t number = image.Has("file_name") ? FrameNumberFromName(image.At("file_name").Text()) : -1;
-      frame_of_image[id] = number >= 0 ? number : id;
+      frame_of_image[id] = file_numbers[i] >= 0 ? file_numbers[i] : id;
       if (image.Has("width") && image.Has("height")) {
         const int64_t width = image.At("width").Integer(), height = image.At("height").Integer();
         if (width <= 0 || height <= 0 || width > 100000 || height > 100000) image.Fail("a positive image size");
@@ -66,26 +83,28 @@ PeopleSequence CocoFromJson(const JsonNode& document, double fps) {
 
   std::map<int64_t, std::vector<DetectedPerson>> by_number;
   for (const auto& [id, number] : frame_of_image) by_number[number];  // images without anyone are frames too
+  const std::vector<int64_t> image_numbers = FrameNumbersAt(entries, "image_id");
   size_t num_points = 0;
   for (size_t i = 0; i < entries.size(); ++i) {
     const JsonNode entry = entries.At(i);
     const JsonNode values = entry.At("keypoints");
-    const std::vector<double> numbers = values.Numbers();
+    const std::vector<double> numbers = values.NumbersOrNan();
     if (num_points == 0) num_points = numbers.size() / 3;
     if (numbers.size() != 3 * num_points || ConventionOfCount(num_points) == nullptr) {
       throw std::runtime_error(values.place() + ": " + std::to_string(numbers.size()) + " numbers, expected 3·" +
                                (i > 0 ? std::to_string(num_points) + " as in the entries before"
                                       : std::string("17 (COCO), 23 or 133 (COCO-WholeBody), 26 or 136 (Halpe)")));
     }
-    int64_t number = FrameNumber(entry.At("image_id"));
+    const JsonNode image_id = entry.At("image_id");
+    int64_t number = image_numbers[i];
+    if (number < 0 && !image_id.is_number()) image_id.Fail("a number or a file name with a number");
     if (const auto found = frame_of_image.find(number); found != frame_of_image.end()) number = found->second;
     DetectedPerson person;
     person.identity = IdentityOf(entry);
     person.points.resize(ConventionOfCount(num_points)->names.size());
     for (size_t k = 0; k < person.points.size(); ++k) {
       const double c = numbers[3 * k + 2];
-      person.points[k] = {static_cast<float>(numbers[3 * k]), static_cast<float>(numbers[3 * k + 1]),
-                          is_annotation ? ConfidenceOfFlag(c) : static_cast<float>(c)};
+      person.points[k] = DetectedKeypoint(numbers[3 * k], numbers[3 * k + 1], is_annotation ? ConfidenceOfFlag(c) : c);
     }
     by_number[number].push_back(std::move(person));
   }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -19,28 +20,60 @@ constexpr size_t kMaxDigits = 15;
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-}  // namespace
-
-int64_t FrameNumberFromName(const std::string& file_name) {
+/// The name without folder, extension and OpenPose's ending.
+std::string StemOf(const std::string& file_name) {
   std::string stem = std::filesystem::path(file_name).filename().string();
   const size_t dot = stem.rfind('.');
   // An extension starts with a letter: "cam01.0037" has none.
   if (dot != std::string::npos && dot + 1 < stem.size() && !IsDigit(stem[dot + 1])) stem.resize(dot);
   const std::string ending = "_keypoints";
   if (stem.ends_with(ending)) stem.resize(stem.size() - ending.size());
+  return stem;
+}
+
+/// The last run of digits before *end, which becomes its begin; −1 if there is none or it is too long.
+int64_t TakeLastNumber(const std::string& stem, size_t* end) {
+  while (*end > 0 && !IsDigit(stem[*end - 1])) --*end;
+  const size_t behind = *end;
+  while (*end > 0 && IsDigit(stem[*end - 1])) --*end;
+  size_t begin = *end;
+  while (begin < behind && stem[begin] == '0' && behind - begin > 1) ++begin;
+  if (begin == behind || behind - begin > kMaxDigits) return -1;
+  return std::stoll(stem.substr(begin, behind - begin));
+}
+
+}  // namespace
+
+int64_t FrameNumberFromName(const std::string& file_name) {
+  const std::string stem = StemOf(file_name);
   size_t end = stem.size();
-  while (end > 0 && !IsDigit(stem[end - 1])) --end;
-  size_t begin = end;
-  while (begin > 0 && IsDigit(stem[begin - 1])) --begin;
-  while (begin < end && stem[begin] == '0' && end - begin > 1) ++begin;
-  if (begin == end || end - begin > kMaxDigits) return -1;
-  return std::stoll(stem.substr(begin, end - begin));
+  return TakeLastNumber(stem, &end);
+}
+
+std::vector<int64_t> FrameNumbersFromNames(const std::vector<std::string>& names) {
+  std::vector<int64_t> numbers;
+  std::vector<std::string> stems;
+  std::vector<size_t> ends;  // of the part of each stem that is not yet read
+  for (const std::string& name : names) {
+    stems.push_back(StemOf(name));
+    ends.push_back(stems.back().size());
+    numbers.push_back(TakeLastNumber(stems.back(), &ends.back()));
+  }
+  const auto differ = [](const std::vector<int64_t>& all) {
+    return std::adjacent_find(all.begin(), all.end(), std::not_equal_to<>()) != all.end();
+  };
+  const auto none_is_missing = [](const std::vector<int64_t>& all) {
+    return std::find(all.begin(), all.end(), -1) == all.end();
+  };
+  std::vector<int64_t> earlier = numbers;
+  while (!earlier.empty() && none_is_missing(earlier) && !differ(earlier)) {
+    for (size_t i = 0; i < stems.size(); ++i) earlier[i] = TakeLastNumber(stems[i], &ends[i]);
+  }
+  return none_is_missing(earlier) ? earlier : numbers;
 }
 
 std::vector<int64_t> NumbersOrOrder(const std::vector<std::string>& names) {
-  std::vector<int64_t> numbers;
-  numbers.reserve(names.size());
-  for (const std::string& name : names) numbers.push_back(FrameNumberFromName(name));
+  std::vector<int64_t> numbers = FrameNumbersFromNames(names);
   if (std::find(numbers.begin(), numbers.end(), -1) != numbers.end()) {
     for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<int64_t>(i);
   }

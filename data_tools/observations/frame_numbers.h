@@ -14,7 +14,12 @@ namespace bodyloom {
 /// ("walk_000000000012_keypoints.json" → 12, "cam01.0037.json" → 37); −1 if there is none or it exceeds 10¹⁵.
 int64_t FrameNumberFromName(const std::string& file_name);
 
-/// The numbers in the names, or their order if a name has no number.
+/// The frame numbers of the names of one clip, in which FrameNumberFromName()'s number may be the same everywhere
+/// ("take2_60fps_12_1080p.json"): then the last of their numbers that differs between names, if all have as many; −1
+/// where there is none. Names may repeat.
+std::vector<int64_t> FrameNumbersFromNames(const std::vector<std::string>& names);
+
+/// FrameNumbersFromNames(), or the order of the names if one has no number.
 std::vector<int64_t> NumbersOrOrder(const std::vector<std::string>& names);
 
 /// Frames on a regular grid.

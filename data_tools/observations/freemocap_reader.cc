@@ -12,7 +12,9 @@ namespace {
 
 constexpr int64_t kMaxFreeMocapFrames = 1'000'000, kFreeMocapRtmPosePoints = 133;
 
-int64_t FindCamera(const std::string& view, int64_t num_cameras, const std::string& where) {
+}  // namespace
+
+int64_t FindArrayCamera(const std::string& view, int64_t num_cameras, const std::string& where) {
   if (view.empty() && num_cameras == 1) return 0;
   for (int64_t c = 0; c < num_cameras && c < 1000; ++c) {
     if (std::to_string(c) == view) return c;
@@ -21,7 +23,14 @@ int64_t FindCamera(const std::string& view, int64_t num_cameras, const std::stri
                                     "; the file has ", num_cameras, " cameras, 0 to ", num_cameras - 1, " (--view 0)"));
 }
 
-}  // namespace
+bool IsFreeMocap(const NdArray& array) {
+  const size_t rank = array.shape.size();
+  if (!array.is_number() || rank < 3 || rank > 4) return false;
+  const int64_t num_points = array.shape[rank - 2], per_point = array.shape[rank - 1];
+  const bool may_be_bare = rank == 3 && per_point == 3 && ConventionOfCount(static_cast<size_t>(num_points)) != nullptr;
+  return num_points >= static_cast<int64_t>(MediaPipe33().names.size()) && (per_point == 2 || per_point == 3) &&
+         !may_be_bare;
+}
 
 KeypointSequence FreeMocapFromArray(const NdArray& array, const std::string& where, const std::string& view,
                                     double fps) {
@@ -48,7 +57,7 @@ KeypointSequence FreeMocapFromArray(const NdArray& array, const std::string& whe
     ThrowFileError(where,
                    Concatenate("an array of ", array.ShapeText(), ", expected 1 to ", kMaxFreeMocapFrames, " frames"));
   }
-  const int64_t camera = FindCamera(view, num_cameras, where);
+  const int64_t camera = FindArrayCamera(view, num_cameras, where);
   const std::vector<double> values = array.ToDoubles();
   KeypointSequence sequence;
   sequence.convention = convention.name;

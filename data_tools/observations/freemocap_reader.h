@@ -10,12 +10,21 @@
 /// Source: freemocap/freemocap, data_layer/recording_models; skellytracker; the file's name states its shape.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "data_tools/formats/ndarray.h"
 #include "geometry/scene/observations.h"
 
 namespace bodyloom {
+
+/// Index of the camera `view` ("0", "1", …; "" when there is one) of an array's. Throws std::runtime_error naming
+/// `where` and the cameras.
+int64_t FindArrayCamera(const std::string& view, int64_t num_cameras, const std::string& where);
+
+/// Returns true for an array of 33 points or more with 2 or 3 numbers each, but for frames × points × 3 of COCO's or
+/// Halpe's family, which may have confidences (keypoint_array_reader.h).
+bool IsFreeMocap(const NdArray& array);
 
 /// `view` chooses the camera: "0", "1", … in the array's order, which is that of the videos' names; "" when there is
 /// one.

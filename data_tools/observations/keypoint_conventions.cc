@@ -71,6 +71,22 @@ const KeypointConvention& MediaPipe33() {
   return convention;
 }
 
+const KeypointConvention& Human36m17() {
+  static const KeypointConvention convention{
+      "human36m17",
+      {"mid_hip", "right_hip", "right_knee", "right_ankle", "left_hip", "left_knee", "left_ankle", "spine", "neck",
+       "head_front", "head_top", "left_shoulder", "left_elbow", "left_wrist", "right_shoulder", "right_elbow",
+       "right_wrist"}};
+  return convention;
+}
+
+const std::vector<const KeypointConvention*>& KnownConventions() {
+  static const std::vector<const KeypointConvention*> conventions = {&Coco17(),         &Body25(),          &Body25B(),
+                                                                     &OpenPoseCoco18(), &CocoWholeBody23(), &Halpe26(),
+                                                                     &MediaPipe33(),    &Human36m17()};
+  return conventions;
+}
+
 const KeypointConvention* ConventionOfCount(size_t num_points) {
   switch (num_points) {
     case 17:

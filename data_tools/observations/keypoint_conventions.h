@@ -4,7 +4,7 @@
 /// Landmarks of bodies (COCO's 17, toes and heels) have the body's names in all conventions; others (neck, mid_hip,
 /// head_top, …) have their own names and constrain nothing unless a body has them. Left and right are the person's.
 /// Sources: OpenPose doc/02_output.md and poseParameters.cpp (BODY_25, BODY_25B, COCO-18), COCO and COCO-WholeBody,
-/// Halpe-FullBody, MediaPipe pose_landmark.
+/// Halpe-FullBody, MediaPipe pose_landmark, VideoPose3D common/h36m_dataset.py.
 #pragma once
 
 #include <string>
@@ -31,6 +31,13 @@ const KeypointConvention& CocoWholeBody23();
 const KeypointConvention& Halpe26();
 /// BlazePose's 33. Its "foot index" is the tip of the foot and is used as the big toe (about 2 cm away).
 const KeypointConvention& MediaPipe33();
+
+/// Human3.6M's 17 as in VideoPose3D: pelvis, legs (right side first), spine, neck, head, arms (left side first). Its
+/// ninth, between chin and nose, is "head_front" and constrains nothing.
+const KeypointConvention& Human36m17();
+
+/// The conventions above.
+const std::vector<const KeypointConvention*>& KnownConventions();
 
 /// The convention of COCO's family with that many landmarks: 17, 23 or 133 (whole body), 26 or 136 (Halpe), of which
 /// the first ones are those named; nullptr for another number.

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "data_tools/formats/atomic_file.h"
@@ -14,16 +17,23 @@
 #include "data_tools/formats/npz.h"
 #include "data_tools/formats/pickle.h"
 #include "data_tools/formats/printable.h"
+#include "data_tools/formats/zip.h"
 #include "data_tools/motion/aist_motion.h"
 #include "data_tools/observations/aist_reader.h"
 #include "data_tools/observations/blazepose_reader.h"
 #include "data_tools/observations/coco_reader.h"
+#include "data_tools/observations/deeplabcut_reader.h"
 #include "data_tools/observations/freemocap_reader.h"
+#include "data_tools/observations/json_folder.h"
+#include "data_tools/observations/keypoint_array_reader.h"
 #include "data_tools/observations/mmpose_reader.h"
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/observations/openpose_reader.h"
 #include "data_tools/observations/people.h"
 #include "data_tools/observations/people_npz.h"
+#include "data_tools/observations/ultralytics_reader.h"
+#include "data_tools/observations/videopose3d_reader.h"
+#include "data_tools/observations/vitpose_reader.h"
 #include "geometry/base/check.h"
 #include "geometry/scene/observations.h"
 
@@ -39,27 +49,15 @@ constexpr double kMaxNormalised = 3;
 constexpr double kMaxOutside = 0.5;
 constexpr size_t kMaxDetectionBytes = size_t{2} << 30;
 constexpr const char* kExpectedDetections =
-    "expected OpenPose or MMPose JSON (a folder or a file), COCO or AlphaPose JSON, BlazePose/MediaPipe JSON, an "
-    "AIST++ "
-    "keypoints2d .pkl, FreeMoCap's 2D .npy, or this project's .npz with 'keypoints'";
-
-std::vector<std::string> SortedEntries(const std::string& folder, bool folders) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::error_code ignored;
-    const bool wanted = folders ? it->is_directory(ignored) : it->path().extension() == ".json";
-    if (wanted) names.push_back(it->path().filename().string());
-  }
-  if (error) throw std::runtime_error(folder + ": cannot list the folder: " + error.message());
-  std::sort(names.begin(), names.end());
-  return names;
-}
+    "expected JSON or JSON Lines (a file, or a folder with one a frame) of OpenPose, MMPose, COCO, AlphaPose, "
+    "Ultralytics, easy_ViTPose or BlazePose/MediaPipe, DeepLabCut's CSV, an AIST++ keypoints2d .pkl, landmarks in a "
+    ".npy "
+    "(FreeMoCap, COCO), VideoPose3D's .npz, or this project's .npz with 'keypoints'";
 
 /// The folder itself when it holds JSON files, else its sub-folder of the chosen view ("cam01" finds "cam01_json").
 std::string FolderOfView(const std::string& folder, const std::string& view) {
-  if (!SortedEntries(folder, /*folders=*/false).empty()) return folder;
-  const std::vector<std::string> names = SortedEntries(folder, /*folders=*/true);
+  if (!JsonFilesOf(folder).empty()) return folder;
+  const std::vector<std::string> names = FoldersOf(folder);
   if (names.empty()) throw std::runtime_error(folder + ": no .json files in this folder; " + kExpectedDetections);
   for (const std::string& name : names) {
     if (name == view || name == view + "_json" || (view.empty() && names.size() == 1)) {
@@ -70,23 +68,10 @@ std::string FolderOfView(const std::string& folder, const std::string& view) {
                            "; the folder has " + PrintableList(names));
 }
 
-/// Returns true if the folder's files are MMPose's, by the first file with a person.
-bool HoldsMmpose(const std::string& folder) {
-  constexpr size_t kMaxFirstBytes = size_t{64} << 20;
-  for (const std::string& name : SortedEntries(folder, /*folders=*/false)) {
-    JsonLimits limits;
-    limits.max_bytes = kMaxFirstBytes;
-    const std::string path = (fs::path(folder) / name).string();
-    const nlohmann::json json = ReadJsonFile(path, limits);
-    if (!json.is_array()) return false;
-    if (!json.empty()) return IsMmposeJson(JsonNode(json, path));
-  }
-  return false;
-}
-
-bool StartsLikeJson(const std::string& bytes) {
+bool StartsLikeJson(std::string_view text) {
+  const std::string_view bytes = WithoutByteOrderMark(text);
   const size_t start = bytes.find_first_not_of(" \t\r\n");
-  return start != std::string::npos && (bytes[start] == '[' || bytes[start] == '{');
+  return start != std::string_view::npos && (bytes[start] == '[' || bytes[start] == '{');
 }
 
 bool StartsLikePickle(const std::string& bytes) {
@@ -150,31 +135,66 @@ void CheckImageSize(const KeypointSequence& sequence, const std::string& where) 
   }
 }
 
+/// Everybody in a JSON document of any known kind.
+PeopleSequence PeopleFromJson(const JsonNode& document, double fps, const std::string& convention) {
+  if (IsOpenPoseJson(document)) return OpenPoseFromJson(document, fps, convention);
+  if (IsMmposeJson(document)) return MmposeFromJson(document, fps);
+  if (IsCocoJson(document)) return CocoFromJson(document, fps);
+  if (IsUltralyticsJson(document)) return UltralyticsFromJson(document, fps);
+  if (IsVitPoseJson(document)) return VitPoseFromJson(document, fps);
+  if (IsBlazePoseJson(document)) return BlazePoseFromJson(document, fps);
+  throw std::runtime_error(document.place() + ": JSON that holds no known detections" +
+                           (document.size() == 0 ? " (it is empty)" : "") + "; " + kExpectedDetections);
+}
+
+/// Everybody in a folder with one JSON file per frame, whose kind the first file with a person shows; or in its only
+/// file, of a whole clip.
+PeopleSequence PeopleInFolder(const std::string& folder, const LoadDetectionsOptions& options,
+                              std::vector<std::string>* warnings) {
+  const double fps = options.fps > 0 ? options.fps : kUsualFps;
+  const std::vector<std::string> names = JsonFilesOf(folder);
+  bool is_mmpose = false, is_ultralytics = false;
+  std::optional<PeopleSequence> clip;
+  ReadFirstFrame(folder, names, [&](const JsonNode& document) {
+    is_mmpose = IsMmposeJson(document);
+    is_ultralytics = IsUltralyticsJson(document);
+    if (names.size() == 1 && (IsCocoJson(document) || IsVitPoseJson(document))) {
+      clip = PeopleFromJson(document, fps, options.convention);
+    }
+  });
+  if (clip) return *std::move(clip);
+  if (is_mmpose) return ReadMmposeFolder(folder, names, fps, warnings);
+  if (is_ultralytics) return ReadUltralyticsFolder(folder, names, fps, warnings);
+  return ReadOpenPoseFolder(folder, fps, options.convention, warnings);
+}
+
+KeypointSequence KeypointsOfNpz(const std::string& bytes, const std::string& path, double fps,
+                                const LoadDetectionsOptions& options) {
+  const NpzArrays arrays = ReadNpzBytes(bytes, path);
+  if (IsVideoPose3d(arrays)) return VideoPose3dFromNpz(bytes, path, options.view, fps, options.convention);
+  if (HasPeople(arrays)) return SelectPerson(PeopleFromNpz(arrays, path), options.person, path);
+  if (const NdArray* array = KeypointArrayOf(arrays)) {
+    return KeypointsFromArray(*array, path, options.view, fps, options.convention);
+  }
+  if (HasKeypoints(arrays)) return KeypointsFromNpz(arrays, path);
+  throw std::runtime_error(path + ": an .npz without 'keypoints'" +
+                           (HasDense(arrays) ? " (it holds dense keypoints)" : "") + "; " + kExpectedDetections);
+}
+
 /// One person's landmarks as in the file.
-KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, const LoadDetectionsOptions& options) {
+KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, const LoadDetectionsOptions& options,
+                           std::vector<std::string>* warnings) {
   const double fps = options.fps > 0 ? options.fps : kUsualFps;
   if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpectedDetections);
   if (StartsLikeJson(bytes)) {
-    const nlohmann::json json = ParseJson(bytes, path);
-    const JsonNode document(json, path);
-    if (IsOpenPoseJson(document)) {
-      return SelectPerson(OpenPoseFromJson(document, fps, options.convention), options.person, path);
-    }
-    if (IsMmposeJson(document)) return SelectPerson(MmposeFromJson(document, fps), options.person, path);
-    if (IsCocoJson(document)) return SelectPerson(CocoFromJson(document, fps), options.person, path);
-    if (IsBlazePoseJson(document)) return SelectPerson(BlazePoseFromJson(document, fps), options.person, path);
-    throw std::runtime_error(path + ": JSON that holds no known detections" +
-                             (document.size() == 0 ? " (it is empty)" : "") + "; " + kExpectedDetections);
+    const nlohmann::json json = ParseJsonLines(bytes, path, {.nan_is_null = true}, warnings);
+    return SelectPerson(PeopleFromJson(JsonNode(json, path), fps, options.convention), options.person, path);
   }
-  if (bytes.compare(0, 4, "PK\x03\x04") == 0) {
-    const NpzArrays arrays = ReadNpzBytes(bytes, path);
-    if (HasKeypoints(arrays)) return KeypointsFromNpz(arrays, path);
-    if (HasPeople(arrays)) return SelectPerson(PeopleFromNpz(arrays, path), options.person, path);
-    throw std::runtime_error(path + ": an .npz without 'keypoints'" +
-                             (HasDense(arrays) ? " (it holds dense keypoints)" : "") + "; " + kExpectedDetections);
-  }
+  if (LooksLikeZip(bytes)) return KeypointsOfNpz(bytes, path, fps, options);
   if (bytes.compare(0, 6, "\x93NUMPY") == 0) {
-    return FreeMocapFromArray(ReadNpyBytes(bytes, path), path, options.view, fps);
+    const NdArray array = ReadNpyBytes(bytes, path);
+    if (IsFreeMocap(array) && options.convention.empty()) return FreeMocapFromArray(array, path, options.view, fps);
+    return KeypointsFromArray(array, path, options.view, fps, options.convention);
   }
   if (StartsLikePickle(bytes)) {
     const PicklePtr file = ReadPickle(bytes, path);
@@ -183,6 +203,7 @@ KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, co
     }
     throw std::runtime_error(path + ": a pickle without 'keypoints2d'; " + kExpectedDetections);
   }
+  if (IsDeepLabCutCsv(bytes)) return SelectPerson(DeepLabCutFromCsv(bytes, path, fps), options.person, path);
   throw std::runtime_error(path + ": unknown kind of file; " + kExpectedDetections);
 }
 
@@ -228,20 +249,20 @@ void DropUnsure(double min_confidence, KeypointSequence* sequence) {
 }
 
 KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string& where,
-                                     const LoadDetectionsOptions& options) {
+                                     const LoadDetectionsOptions& options, std::vector<std::string>* warnings) {
   CheckOptions(options);
-  return Finish(ReadBytes(bytes, where, options), where, options);
+  return Finish(ReadBytes(bytes, where, options, warnings), where, options);
 }
 
-KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options) {
+KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options,
+                                std::vector<std::string>* warnings) {
   CheckOptions(options);
   std::error_code ignored;
-  if (!fs::is_directory(path, ignored))
-    return DetectionsFromBytes(ReadFileBytes(path, kMaxDetectionBytes), path, options);
+  if (!fs::is_directory(path, ignored)) {
+    return DetectionsFromBytes(ReadFileBytes(path, kMaxDetectionBytes), path, options, warnings);
+  }
   const std::string folder = FolderOfView(path, options.view);
-  const double fps = options.fps > 0 ? options.fps : kUsualFps;
-  const PeopleSequence people = HoldsMmpose(folder) ? ReadMmposeFolder(folder, SortedEntries(folder, false), fps)
-                                                    : ReadOpenPoseFolder(folder, fps, options.convention);
+  const PeopleSequence people = PeopleInFolder(folder, options, warnings);
   return Finish(SelectPerson(people, options.person, folder), path, options);
 }
 

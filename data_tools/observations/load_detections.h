@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Loads one person's 2D landmarks from detections in any supported format, recognised by content.
 ///
-/// Read: a folder of OpenPose or MMPose JSON files (or a folder of such folders, one per view), OpenPose and MMPose
-/// frames in one file, COCO results or annotations and AlphaPose, BlazePose/MediaPipe dumps, AIST++ keypoints2d
-/// pickles, FreeMoCap's 2D .npy, the project's own .npz.
-/// If all coordinates are in [0, 1], or [−1, 1] for OpenPose, they are fractions of the image, whose size must then be
-/// known. Fractions become pixels by x·width − 0.5 (pixel centres at integers).
+/// Read: a folder of OpenPose, MMPose or Ultralytics JSON files (or a folder of such folders, one per view), their
+/// frames in one file, COCO results or annotations and AlphaPose, easy_ViTPose's JSON, BlazePose/MediaPipe dumps,
+/// DeepLabCut's CSV, AIST++ keypoints2d pickles, FreeMoCap's 2D .npy and bare arrays (keypoint_array_reader.h),
+/// VideoPose3D's .npz, the project's own .npz. JSON may be JSON Lines, begin with a byte-order mark and hold NaN or
+/// null, which are missing landmarks in all formats. In folders, files that begin with a dot are passed over. If all
+/// coordinates are in [0, 1], or [−1, 1] for OpenPose, they are fractions of the image, whose size must then be known.
+/// Fractions become pixels by x·width − 0.5 (pixel centres at integers).
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "geometry/scene/observations.h"
 
@@ -22,16 +25,19 @@ struct LoadDetectionsOptions {
   int image_height = 0;
   int other_width = 0, other_height = 0;  ///< another size that detections may state, and then keep; 0: none
   double min_confidence = 0;              ///< landmarks below this count as missing
-  std::string convention;                 ///< OpenPose model; empty: detected (openpose_reader.h)
+  std::string convention;  ///< order of landmarks of OpenPose, bare arrays, VideoPose3D; empty: detected by each reader
 };
 
-/// Throws std::runtime_error in one line: what was found, what was expected, what to do; std::invalid_argument for
-/// options that contradict each other.
-KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options = {});
+/// `warnings`, when requested, gets a line for each fault that was passed over: broken files in a folder
+/// (json_folder.h), a cut end of JSON Lines. Throws std::runtime_error in one line: what was found, what was expected,
+/// what to do; std::invalid_argument for options that contradict each other.
+KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options = {},
+                                std::vector<std::string>* warnings = nullptr);
 
 /// The same for the contents of a file; `where` names it in messages.
 KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string& where,
-                                     const LoadDetectionsOptions& options = {});
+                                     const LoadDetectionsOptions& options = {},
+                                     std::vector<std::string>* warnings = nullptr);
 
 /// Marks landmarks with a confidence that is lower or NaN as missing.
 void DropUnsure(double min_confidence, KeypointSequence* sequence);

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/observations/mmpose_reader.h"
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "data_tools/formats/printable.h"
 #include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/json_folder.h"
 #include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {
-
-constexpr size_t kMaxBytesPerImage = size_t{64} << 20;
 
 bool IsMmposePerson(const JsonNode& node) { return node.Has("keypoints") && node.Has("keypoint_scores"); }
 bool IsMmposeFrame(const JsonNode& node) { return node.Has("frame_id") && node.Has("instances"); }
@@ -39,7 +36,7 @@ DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention** c
                                                                     "or 136 (Halpe)")));
   }
   *convention = found;
-  const std::vector<double> scores = node.At("keypoint_scores").Numbers(static_cast<int>(n));
+  const std::vector<double> scores = node.At("keypoint_scores").NumbersOrNan(static_cast<int>(n));
   DetectedPerson person;
   person.points.resize(found->names.size());
   for (size_t k = 0; k < person.points.size(); ++k) {
@@ -47,8 +44,8 @@ DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention** c
     if (point.size() == 3) {
       ThrowFileError(point.place(), "3 numbers: keypoints that were lifted to 3D, expected pixels (x, y)");
     }
-    const std::vector<double> xy = point.Numbers(2);
-    person.points[k] = {static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(scores[k])};
+    const std::vector<double> xy = point.NumbersOrNan(2);
+    person.points[k] = DetectedKeypoint(xy[0], xy[1], scores[k]);
   }
   return person;
 }
@@ -57,17 +54,6 @@ std::vector<DetectedPerson> PeopleOf(const JsonNode& list, const KeypointConvent
   if (!list.is_array()) list.Fail("a list of people");
   std::vector<DetectedPerson> people;
   for (size_t i = 0; i < list.size(); ++i) people.push_back(PersonFromJson(list.At(i), convention));
-  return people;
-}
-
-PeopleSequence Assemble(std::vector<std::vector<DetectedPerson>> frames, const std::vector<int64_t>& numbers,
-                        const KeypointConvention* convention, double fps, const std::string& where) {
-  PeopleSequence people;
-  people.convention = convention != nullptr ? *convention : Coco17();
-  const FrameGrid grid = MakeFrameGrid(numbers, fps, where);
-  people.timestamps = grid.timestamps;
-  people.frames.resize(grid.timestamps.size());
-  for (size_t i = 0; i < frames.size(); ++i) people.frames[static_cast<size_t>(grid.index[i])] = std::move(frames[i]);
   return people;
 }
 
@@ -96,20 +82,17 @@ PeopleSequence MmposeFromJson(const JsonNode& document, double fps) {
     }
   }
   if (convention != nullptr) CheckNames(document, convention->names.size());
-  return Assemble(std::move(frames), numbers, convention, fps, document.place());
+  return PeopleOnGrid(std::move(frames), numbers, convention, fps, document.place());
 }
 
-PeopleSequence ReadMmposeFolder(const std::string& folder, const std::vector<std::string>& names, double fps) {
+PeopleSequence ReadMmposeFolder(const std::string& folder, const std::vector<std::string>& names, double fps,
+                                std::vector<std::string>* warnings) {
   const KeypointConvention* convention = nullptr;
-  std::vector<std::vector<DetectedPerson>> frames;
-  JsonLimits limits;
-  limits.max_bytes = kMaxBytesPerImage;
-  for (const std::string& name : names) {
-    const std::string path = (std::filesystem::path(folder) / name).string();
-    const nlohmann::json document = ReadJsonFile(path, limits);
-    frames.push_back(PeopleOf(JsonNode(document, path), &convention));
-  }
-  return Assemble(std::move(frames), NumbersOrOrder(names), convention, fps, folder);
+  std::vector<std::vector<DetectedPerson>> frames(names.size());
+  ReadJsonFrames(
+      folder, names, [&](size_t i, const JsonNode& document) { frames[i] = PeopleOf(document, &convention); },
+      warnings);
+  return PeopleOnGrid(std::move(frames), NumbersOrOrder(names), convention, fps, folder);
 }
 
 }  // namespace bodyloom

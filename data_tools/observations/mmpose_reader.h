@@ -23,8 +23,9 @@ bool IsMmposeJson(const JsonNode& document);
 /// Throws std::runtime_error naming the place.
 PeopleSequence MmposeFromJson(const JsonNode& document, double fps);
 
-/// Reads files of one image each from a folder, with these names; frame numbers as in ReadOpenPoseFolder(). Throws
-/// std::runtime_error naming file and place.
-PeopleSequence ReadMmposeFolder(const std::string& folder, const std::vector<std::string>& names, double fps);
+/// Reads files of one image each from a folder, with these names: frame numbers as in ReadOpenPoseFolder(), broken
+/// files and warnings as in ReadJsonFrames(). Throws std::runtime_error naming file and place.
+PeopleSequence ReadMmposeFolder(const std::string& folder, const std::vector<std::string>& names, double fps,
+                                std::vector<std::string>* warnings = nullptr);
 
 }  // namespace bodyloom

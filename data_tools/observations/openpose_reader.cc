@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/observations/openpose_reader.h"
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/json_folder.h"
+#include "geometry/base/check.h"
 
 namespace bodyloom {
 namespace {
-
-constexpr size_t kMaxBytesPerFrame = size_t{64} << 20;
 
 /// One frame as it stands in the file, before the convention is known.
 using RawFrame = std::vector<DetectedPerson>;
@@ -28,7 +26,7 @@ RawFrame FrameFromJson(const JsonNode& frame, size_t* num_points) {
     const char* key = entry.Has("pose_keypoints_2d") ? "pose_keypoints_2d" : "pose_keypoints";
     if (!entry.Has(key)) continue;  // an empty object: a person who was tracked but not found
     const JsonNode values = entry.At(key);
-    const std::vector<double> numbers = values.Numbers();
+    const std::vector<double> numbers = values.NumbersOrNan();
     if (numbers.empty()) continue;  // only a face or hands were found
     if (numbers.size() % 3 != 0) {
       throw std::runtime_error(values.place() + ": " + std::to_string(numbers.size()) +
@@ -42,8 +40,7 @@ RawFrame FrameFromJson(const JsonNode& frame, size_t* num_points) {
     DetectedPerson person;
     person.points.resize(*num_points);
     for (size_t k = 0; k < *num_points; ++k) {
-      person.points[k] = {static_cast<float>(numbers[3 * k]), static_cast<float>(numbers[3 * k + 1]),
-                          static_cast<float>(numbers[3 * k + 2])};
+      person.points[k] = DetectedKeypoint(numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]);
     }
     if (entry.Has("person_id") && entry.At("person_id").is_array()) {
       const std::vector<double> ids = entry.At("person_id").Numbers();
@@ -102,39 +99,19 @@ const KeypointConvention& FindConvention(size_t num_points, const std::string& w
                            " landmarks a person, expected 25 (BODY_25, BODY_25B), 18 (COCO with neck), 17 or 26");
 }
 
-PeopleSequence Assemble(std::vector<RawFrame> raw, const std::vector<int64_t>& numbers, size_t num_points, double fps,
-                        const std::string& convention, const std::string& where) {
-  PeopleSequence people;
-  people.convention = FindConvention(num_points, convention, raw, where);
-  FrameGrid grid = MakeFrameGrid(numbers, fps, where);
-  people.timestamps = std::move(grid.timestamps);
-  people.frames.resize(people.timestamps.size());
-  for (size_t i = 0; i < raw.size(); ++i) people.frames[grid.index[i]] = std::move(raw[i]);
-  return people;
-}
-
 }  // namespace
 
-PeopleSequence ReadOpenPoseFolder(const std::string& folder, double fps, const std::string& convention) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".json") names.push_back(it->path().filename().string());
-  }
-  if (error) throw std::runtime_error(folder + ": cannot list the folder: " + error.message());
-  if (names.empty()) throw std::runtime_error(folder + ": no .json files, expected one OpenPose file a frame");
-  std::sort(names.begin(), names.end());
-  std::vector<RawFrame> raw;
-  raw.reserve(names.size());
+PeopleSequence ReadOpenPoseFolder(const std::string& folder, double fps, const std::string& convention,
+                                  std::vector<std::string>* warnings) {
+  const std::vector<std::string> names = JsonFilesOf(folder);
+  if (names.empty()) ThrowFileError(folder, "no .json files, expected one OpenPose file a frame");
+  std::vector<RawFrame> raw(names.size());
   size_t num_points = 0;
-  JsonLimits limits;
-  limits.max_bytes = kMaxBytesPerFrame;
-  for (const std::string& name : names) {
-    const std::string path = (std::filesystem::path(folder) / name).string();
-    const nlohmann::json document = ReadJsonFile(path, limits);
-    raw.push_back(FrameFromJson(JsonNode(document, path), &num_points));
-  }
-  return Assemble(std::move(raw), NumbersOrOrder(names), num_points, fps, convention, folder);
+  ReadJsonFrames(
+      folder, names, [&](size_t i, const JsonNode& document) { raw[i] = FrameFromJson(document, &num_points); },
+      warnings);
+  const KeypointConvention& found = FindConvention(num_points, convention, raw, folder);
+  return PeopleOnGrid(std::move(raw), NumbersOrOrder(names), &found, fps, folder);
 }
 
 bool IsOpenPoseJson(const JsonNode& document) {
@@ -161,7 +138,8 @@ PeopleSequence OpenPoseFromJson(const JsonNode& document, double fps, const std:
     for (const std::string& key : keys) raw.push_back(FrameFromJson(document.At(key), &num_points));
     numbers = NumbersOrOrder(keys);
   }
-  return Assemble(std::move(raw), numbers, num_points, fps, convention, document.place());
+  const KeypointConvention& found = FindConvention(num_points, convention, raw, document.place());
+  return PeopleOnGrid(std::move(raw), numbers, &found, fps, document.place());
 }
 
 }  // namespace bodyloom

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "data_tools/formats/json_reader.h"
 #include "data_tools/observations/people.h"
@@ -18,8 +19,9 @@ namespace bodyloom {
 
 /// Reads a folder with one JSON file per frame; frame numbers come from the file names (frame_numbers.h), or from their
 /// order if a name has no number. `convention` is "" (detect), "body25", "body25b", "openpose_coco18", "coco17" or
-/// "halpe26". Throws std::runtime_error naming the file and place.
-PeopleSequence ReadOpenPoseFolder(const std::string& folder, double fps, const std::string& convention = "");
+/// "halpe26". Broken files and warnings as in ReadJsonFrames(). Throws std::runtime_error naming the file and place.
+PeopleSequence ReadOpenPoseFolder(const std::string& folder, double fps, const std::string& convention = "",
+                                  std::vector<std::string>* warnings = nullptr);
 
 /// Returns true if a parsed file has one of OpenPose's forms.
 bool IsOpenPoseJson(const JsonNode& document);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
 #include "data_tools/formats/printable.h"
 #include "data_tools/observations/mask_runs.h"
@@ -18,17 +19,20 @@ namespace {
 
 constexpr const char *kMaskKind = "person", *kDensePoseKind = "densepose";
 
-/// Returns true if the labels are a mask of the person.
-bool IsMask(const NpzArrays& arrays, const std::string& where) {
+enum class LabelKind { kNotSaid, kMask, kDensePose };
+/// The person in masks of images of eight bits.
+constexpr uint8_t kMaskWhite = 255;
+
+LabelKind KindOfLabels(const NpzArrays& arrays, const std::string& where) {
   const auto found = arrays.find("label_kind");
-  if (found == arrays.end()) return false;
+  if (found == arrays.end()) return LabelKind::kNotSaid;
   const std::string kind =
       found->second.is_text() && found->second.num_elements() == 1 ? found->second.ToStrings()[0] : "";
   if (kind != kMaskKind && kind != kDensePoseKind) {
     throw std::runtime_error(where + ": label_kind: '" + PrintableText(kind) + "', expected the text \"" + kMaskKind +
                              "\" or \"" + kDensePoseKind + "\"");
   }
-  return kind == kMaskKind;
+  return kind == kMaskKind ? LabelKind::kMask : LabelKind::kDensePose;
 }
 
 /// Distance of two boxes in pixels, 0 if they touch.
@@ -140,23 +144,83 @@ LabelImage CutPerson(const cv::Mat& image, const ReadPartLabelsOptions& options,
   return {box.x, box.y, box.width, box.height, {labels.datastart, labels.dataend}};
 }
 
-/// Reads `labels`, one image per frame.
-PartLabelSequence FromImages(const NpzArrays& arrays, const std::string& where, const ReadPartLabelsOptions& options,
-                             int64_t* dropped_pixels) {
-  const NdArray& array = RequireArray(arrays, "labels", where);
-  const auto fail = [&](const std::string& message) { throw std::runtime_error(where + ": labels: " + message); };
-  if (array.shape.size() != 3 || array.dtype != DType::kU8) {
-    fail("shape " + array.ShapeText() + ", expected uint8, frames x height x width");
+/// The labels as bytes: any integers or booleans from 0 to 255. Throws "where: labels: …" for others.
+std::string BytesOfLabels(const NdArray& array, const std::string& where) {
+  if (array.dtype == DType::kU8) return array.bytes;
+  const bool is_float = array.dtype == DType::kF16 || array.dtype == DType::kF32 || array.dtype == DType::kF64;
+  if (!array.is_number() || is_float) {
+    ThrowFileError(where, "labels",
+                   std::string(is_float ? "numbers with a fraction" : "no numbers") +
+                       ", expected uint8 or another type of whole numbers (labels.astype(np.uint8))");
   }
+  const std::vector<int64_t> values = array.ToInts();
+  std::string bytes(values.size(), '\0');
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (values[i] < 0 || values[i] > 255) {
+      ThrowFileError(where, "labels", Concatenate("element ", i, " is ", values[i], ", expected 0 to 255"));
+    }
+    bytes[i] = static_cast<char>(values[i]);
+  }
+  return bytes;
+}
+
+/// Refuses height × width × frames, which shows in the number of timestamps, or in images far longer than wide (or the
+/// reverse) of which the first two sides would make usual ones.
+void RequireFramesFirst(const NdArray& array, const NpzArrays& arrays, const std::string& where) {
+  const int64_t T = array.shape[0], H = array.shape[1], W = array.shape[2];
+  constexpr double kUsualSides = 2.4, kLongSides = 4;
+  const auto ratio = [](int64_t a, int64_t b) { return double(std::max(a, b)) / double(std::min(a, b)); };
+  const auto times = arrays.find("timestamps");
+  const int64_t num_times = times == arrays.end() ? 0 : times->second.num_elements();
+  const bool is_last =
+      num_times > 0 ? num_times == W && num_times != T : ratio(H, W) > kLongSides && ratio(T, H) < kUsualSides;
+  if (!is_last) return;
+  ThrowFileError(where, "labels",
+                 "shape " + array.ShapeText() +
+                     ", which looks like height x width x frames; expected frames first (np.moveaxis(labels, -1, 0))");
+}
+
+/// The one label beside 0; 0 if there is none or several.
+uint8_t OnlyLabel(const std::string& bytes) {
+  char only = 0;
+  for (const char byte : bytes) {
+    if (byte == 0 || byte == only) continue;
+    if (only != 0) return 0;
+    only = byte;
+  }
+  return static_cast<uint8_t>(only);
+}
+
+/// Reads `labels`, one image per frame, as a mask if they are said to be one or can only be one.
+PartLabelSequence FromImages(const NpzArrays& arrays, const std::string& where, const ReadPartLabelsOptions& options,
+                             int64_t* dropped_pixels, LabelKind* kind) {
+  const NdArray& array = RequireArray(arrays, "labels", where);
+  const auto fail = [&](const std::string& message) { ThrowFileError(where, "labels", message); };
+  if (array.shape.size() != 3) fail("shape " + array.ShapeText() + ", expected frames x height x width");
   const int64_t T = array.shape[0], H = array.shape[1], W = array.shape[2];
   if (T < 1 || H < 1 || W < 1 || std::max(H, W) > kMaxLabelPixelsASide) {
     fail(Concatenate("shape ", array.ShapeText(), ", expected at least one frame and at most ", kMaxLabelPixelsASide,
                      " pixels a side"));
   }
+  RequireFramesFirst(array, arrays, where);
+  std::string converted;
+  const std::string* labels_bytes = &array.bytes;
+  if (array.dtype != DType::kU8) {
+    converted = BytesOfLabels(array, where);
+    labels_bytes = &converted;
+  }
+  // DensePose's part 1 is a half of the trunk: labels of which it is the only one are a mask, as 0 and 255 are.
+  const uint8_t only = *kind == LabelKind::kDensePose ? 0 : OnlyLabel(*labels_bytes);
+  if (only == 1 || only == kMaskWhite) *kind = LabelKind::kMask;
+  if (only == kMaskWhite) {
+    converted = *labels_bytes;
+    std::replace(converted.begin(), converted.end(), static_cast<char>(kMaskWhite), '\x01');
+    labels_bytes = &converted;
+  }
   PartLabelSequence sequence;
   sequence.image_width = static_cast<int>(W);
   sequence.image_height = static_cast<int>(H);
-  const auto* bytes = reinterpret_cast<const uint8_t*>(array.bytes.data());
+  const auto* bytes = reinterpret_cast<const uint8_t*>(labels_bytes->data());
   for (int64_t t = 0; t < T; ++t) {
     const uint8_t* first = bytes + t * H * W;
     const uint8_t* wrong =
@@ -202,8 +266,9 @@ bool HasPartLabels(const NpzArrays& arrays) { return arrays.contains("labels") |
 PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& where,
                                     const ReadPartLabelsOptions& options, int64_t* dropped_pixels) {
   if (dropped_pixels != nullptr) *dropped_pixels = 0;
+  LabelKind kind = KindOfLabels(arrays, where);
   PartLabelSequence sequence = HasMaskRuns(arrays) ? FromRuns(arrays, where, options, dropped_pixels)
-                                                   : FromImages(arrays, where, options, dropped_pixels);
+                                                   : FromImages(arrays, where, options, dropped_pixels, &kind);
   const size_t T = sequence.frames.size();
   if (arrays.contains("timestamps")) {
     sequence.timestamps = TimestampsFromNpz(arrays, where);
@@ -214,13 +279,16 @@ PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& 
   } else {
     for (size_t t = 0; t < T; ++t) sequence.timestamps.push_back(static_cast<double>(t) / options.fps);
   }
-  if (IsMask(arrays, where)) sequence.AsMask();
+  if (kind == LabelKind::kMask) sequence.AsMask();
   return sequence;
 }
 
 PartLabelSequence ReadPartLabels(const std::string& path, const ReadPartLabelsOptions& options,
                                  int64_t* dropped_pixels) {
-  return PartLabelsFromNpz(ReadNpz(path), path, options, dropped_pixels);
+  const std::string bytes = ReadFileBytes(path);
+  const bool is_bare = bytes.starts_with("\x93NUMPY");
+  return PartLabelsFromNpz(is_bare ? NpzArrays{{"labels", ReadNpyBytes(bytes, path)}} : ReadNpzBytes(bytes, path), path,
+                           options, dropped_pixels);
 }
 
 }  // namespace bodyloom

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Reads DensePose part labels, or a mask of the person, of a whole clip from one .npz: key `labels`, uint8, T×H×W, 0 =
-/// background, 1..24 = parts; optional `timestamps` (T, seconds) and `label_kind`, the text "densepose" (the default)
-/// or "person": then 1 is the person, and PartLabelSequence::AsMask() has been applied to the result. A mask may be
-/// stored as runs (mask_runs.h) in place of `labels`, as written by this project.
+/// Reads DensePose part labels, or a mask of the person, of a whole clip from one .npz: key `labels`, uint8 or other
+/// integers or booleans, T×H×W, 0 = background, 1..24 = parts; optional `timestamps` (T, seconds) and `label_kind`, the
+/// text "densepose" or "person": then 1 is the person, and PartLabelSequence::AsMask() has been applied to the result.
+/// Without `label_kind`, labels are a mask if 1, or 255, is the only one beside 0, else DensePose's. 255 is the person
+/// of a mask whose only label it is. A mask may be stored as runs (mask_runs.h) in place of `labels`, as written by
+/// this project.
 #pragma once
 
 #include <string>
@@ -32,8 +34,8 @@ bool HasPartLabels(const NpzArrays& arrays);
 
 /// Reads each frame's labels, cropped to the person's box. Blobs of labels apart from the person (min_share, max_gap)
 /// become background; `dropped_pixels`, when requested, counts them over the clip. Throws std::runtime_error naming the
-/// file, the key, and what was expected: shape, type, a label above highest_label (with its frame and pixel),
-/// timestamps that do not increase.
+/// file, the key, and what was expected: shape (also of height × width × frames), type, a label above highest_label
+/// (with its frame and pixel), timestamps that do not increase.
 PartLabelSequence ReadPartLabels(const std::string& path, const ReadPartLabelsOptions& options = {},
                                  int64_t* dropped_pixels = nullptr);
 PartLabelSequence PartLabelsFromNpz(const NpzArrays& arrays, const std::string& where,

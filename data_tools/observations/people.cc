@@ -6,8 +6,10 @@
 #include <limits>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "data_tools/observations/doubles.h"
+#include "data_tools/observations/frame_numbers.h"
 #include "geometry/base/check.h"
 #include "geometry/scene/observations.h"
 
@@ -90,6 +92,23 @@ void Extend(OpenTrack* track, int frame, int index, const DetectedPerson& person
 }
 
 }  // namespace
+
+Keypoint DetectedKeypoint(double x, double y, double confidence) {
+  const Keypoint point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(confidence)};
+  const bool is_finite = std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.confidence);
+  return is_finite ? point : Keypoint{};
+}
+
+PeopleSequence PeopleOnGrid(std::vector<std::vector<DetectedPerson>> frames, const std::vector<int64_t>& numbers,
+                            const KeypointConvention* convention, double fps, const std::string& where) {
+  PeopleSequence people;
+  people.convention = convention != nullptr ? *convention : Coco17();
+  FrameGrid grid = MakeFrameGrid(numbers, fps, where);
+  people.timestamps = std::move(grid.timestamps);
+  people.frames.resize(people.timestamps.size());
+  for (size_t i = 0; i < frames.size(); ++i) people.frames[size_t(grid.index[i])] = std::move(frames[i]);
+  return people;
+}
 
 std::vector<PersonTrack> LinkPeople(const PeopleSequence& people) {
   const int num_frames = static_cast<int>(people.frames.size());

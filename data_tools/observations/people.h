@@ -9,6 +9,7 @@
 /// found twice are one (doubles.h).
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,12 +24,20 @@ struct DetectedPerson {
   int identity = -1;             ///< from the detector's own tracker; −1 if it has none
 };
 
+/// A landmark from a file's numbers: all zero, which is missing, unless all three are finite.
+Keypoint DetectedKeypoint(double x, double y, double confidence);
+
 struct PeopleSequence {
   KeypointConvention convention;
   std::vector<std::vector<DetectedPerson>> frames;  ///< T
   std::vector<double> timestamps;                   ///< T seconds, strictly increasing
   int image_width = 0, image_height = 0;
 };
+
+/// Frames with these numbers (in any order) on the grid of MakeFrameGrid(), which throws std::runtime_error beginning
+/// with `where`. Without a convention, as nobody was detected, COCO's.
+PeopleSequence PeopleOnGrid(std::vector<std::vector<DetectedPerson>> frames, const std::vector<int64_t>& numbers,
+                            const KeypointConvention* convention, double fps, const std::string& where);
 
 /// One person through the clip.
 struct PersonTrack {

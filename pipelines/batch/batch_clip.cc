@@ -69,10 +69,6 @@ ClipStatus StatusFrom(const JsonNode& node) {
   ThrowFileError(node.place(), "'" + PrintableText(name) + "', expected the status of a clip");
 }
 
-double NumberOrNan(const JsonNode& node) {
-  return node.is_null() ? std::numeric_limits<double>::quiet_NaN() : node.Number();
-}
-
 std::string CsvCell(double error) { return std::isfinite(error) ? Fixed(error, 2) : ""; }
 
 }  // namespace
@@ -140,8 +136,8 @@ ClipRecord ClipRecordFromText(const std::string& text, const std::string& path) 
   record.people = node.At("people").Int();
   const JsonNode counts = node.At("frames_by_status");
   for (const std::string& status : counts.Keys()) record.frames_by_status[status] = counts.At(status).Int();
-  record.reprojection_median_px = NumberOrNan(node.At("reprojection_median_px"));
-  record.reprojection_p95_px = NumberOrNan(node.At("reprojection_p95_px"));
+  record.reprojection_median_px = node.At("reprojection_median_px").NumberOrNan();
+  record.reprojection_p95_px = node.At("reprojection_p95_px").NumberOrNan();
   return record;
 }
 

@@ -148,6 +148,7 @@ std::string ToText(const SurveyMotionsReport& report) {
                  clip.gaps, clip.frames_mended);
   }
   for (const auto& [file, reason] : summary.left_out) text += "left out  " + file + ": " + reason + "\n";
+  for (const std::string& warning : summary.warnings) text += "warning   " + warning + "\n";
   for (const std::string& name : summary.unnamed) {
     text += "unnamed   " + name + ": not in the split, taken for training, class other\n";
   }
@@ -168,6 +169,7 @@ std::string ToJson(const SurveyMotionsReport& report) {
                                        {"test_seconds_by_class", summary.test_seconds_by_class},
                                        {"not_in_split", summary.unnamed},
                                        {"left_out", left_out},
+                                       {"warnings", summary.warnings},
                                        {"clips", clips}};
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

@@ -18,7 +18,9 @@ LearnPriorReport LearnPrior(const LearnPriorRequest& request, const PipelineCall
   for (const std::string& file : FilesBelow(request.motions)) {
     callbacks.Update("read", 0);
     try {
-      Motion motion = LoadMotion(file);
+      std::vector<std::string> warnings;
+      Motion motion = LoadMotion(file, {}, nullptr, &warnings);
+      for (const std::string& warning : warnings) callbacks.Message(warning);
       seconds += motion.timestamps.back() - motion.timestamps.front();
       motions.push_back(std::move(motion));
     } catch (const std::runtime_error& error) {  // licences, skeletons and readmes lie among the motions

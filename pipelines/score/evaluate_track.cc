@@ -126,7 +126,7 @@ Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track
   if (request.truth.empty() && request.seen.empty()) return EvaluateAlone(in_scene);
   const Track track = TrackInCameras(body, in_scene);  // what the other protocols compare
   if (!request.seen.empty()) {
-    return EvaluateTriangulatedClip(track, ReadRigClip(request.cameras, request.seen, request.view, track),
+    return EvaluateTriangulatedClip(track, ReadRigClip(request.cameras, request.seen, request.view, track, callbacks),
                                     request.view);
   }
   if (!fs::is_directory(truth)) {

@@ -19,11 +19,14 @@
 namespace bodyloom {
 namespace {
 
-RigView ReadView(const RigDetections& seen, const std::vector<NamedCamera>& cameras, const std::string& calibration) {
+RigView ReadView(const RigDetections& seen, const std::vector<NamedCamera>& cameras, const std::string& calibration,
+                 const PipelineCallbacks& callbacks) {
   const NamedCamera& named = FindCamera(cameras, seen.view, calibration);
   LoadDetectionsOptions options;
   options.person = seen.person;
-  KeypointSequence detections = LoadDetections(seen.detections, options);
+  std::vector<std::string> warnings;
+  KeypointSequence detections = LoadDetections(seen.detections, options, &warnings);
+  for (const std::string& warning : warnings) callbacks.Message(warning);
   const Camera& camera = named.camera;
   if (detections.image_width > 0) {
     const Matrix2x3d map = VideoFromCameraPixels(named.video_px_from_camera_px, camera, detections.image_width,
@@ -61,7 +64,7 @@ RigDetections RigDetectionsFromText(const std::string& text) {
 }
 
 MultiViewClip ReadRigClip(const std::string& cameras, const std::vector<RigDetections>& seen, const std::string& view,
-                          const Track& track) {
+                          const Track& track, const PipelineCallbacks& callbacks) {
   if (seen.size() < 2) throw RequestError("one camera has nothing to triangulate with, expected detections of two");
   const std::vector<NamedCamera> calibrated = LoadCameras(cameras);
   const std::string fitted = FindCamera(calibrated, view, cameras).name;
@@ -69,7 +72,7 @@ MultiViewClip ReadRigClip(const std::string& cameras, const std::vector<RigDetec
   clip.name = std::filesystem::path(seen[0].detections).stem().string();
   int own = -1;
   for (const RigDetections& one : seen) {
-    clip.views.push_back(ReadView(one, calibrated, cameras));
+    clip.views.push_back(ReadView(one, calibrated, cameras, callbacks));
     if (clip.views.back().name != fitted) continue;
     own = int(clip.views.size()) - 1;
     clip.views.back().name = view;  // as the caller spells it

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data_tools/evaluation/held_out_views.h"
+#include "geometry/base/callbacks.h"
 #include "geometry/scene/track.h"
 
 namespace bodyloom {
@@ -24,8 +25,8 @@ RigDetections RigDetectionsFromText(const std::string& text);
 /// moment, and the frame of the track's first timestamp is looked up in the detections of `view`, the camera that the
 /// track was fitted to. Joints are triangulated (triangulated_clip.h). Throws RequestError for fewer than two cameras
 /// or if `view` is none of them, std::runtime_error naming a file that cannot be used or whose frames do not reach the
-/// track.
+/// track. Warnings of the readers are messages.
 MultiViewClip ReadRigClip(const std::string& cameras, const std::vector<RigDetections>& seen, const std::string& view,
-                          const Track& track);
+                          const Track& track, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "data_tools/motion/load_motion.h"
@@ -18,7 +19,7 @@ constexpr double kDemoFps = 30;
 
 }  // namespace
 
-Motion LoadMotionSource(const MotionSource& source, const BodyModel& body) {
+Motion LoadMotionSource(const MotionSource& source, const BodyModel& body, const PipelineCallbacks& callbacks) {
   BODYLOOM_CHECK(source.speed > 0 && (source.speed == 1 || source.fps > 0), "speed ", source.speed, " at ", source.fps,
                  " frames a second, expected positive numbers");
   Motion motion;
@@ -28,7 +29,14 @@ Motion LoadMotionSource(const MotionSource& source, const BodyModel& body) {
   } else {
     LoadMotionOptions options;
     options.resample_fps = source.fps / source.speed;
-    motion = LoadMotion(source.name, options);
+    std::vector<std::string> warnings;
+    motion = LoadMotion(source.name, options, nullptr, &warnings);
+    for (const std::string& warning : warnings) callbacks.Message(warning);
+    if (motion.betas.size() > body.num_betas()) {  // AMASS has 16; components are in order of their variance
+      callbacks.Message(Concatenate(source.name, ": of ", motion.betas.size(), " shape components the first ",
+                                    body.num_betas(), " are taken, as the body has"));
+      motion.betas.conservativeResize(body.num_betas());
+    }
   }
   const auto at_speed = [&](int frames) { return static_cast<int>(std::lround(frames / source.speed)); };
   const int first = at_speed(source.first_frame), available = motion.num_frames() - first;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "geometry/base/callbacks.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/track.h"
 
@@ -18,8 +19,9 @@ struct MotionSource {
   double speed = 1;
 };
 
-/// Loads, resamples and trims the motion; its times start at zero. Throws std::runtime_error naming the file, and
+/// Loads, resamples and trims the motion; its times start at zero. Shape components that the body does not have are
+/// left out. That and warnings of the reader are messages. Throws std::runtime_error naming the file, and
 /// std::invalid_argument for a speed that is not positive or has no fps.
-Motion LoadMotionSource(const MotionSource& source, const BodyModel& body);
+Motion LoadMotionSource(const MotionSource& source, const BodyModel& body, const PipelineCallbacks& callbacks = {});
 
 }  // namespace bodyloom

@@ -84,7 +84,7 @@ SynthesizeClipReport SynthesizeClip(const SynthesizeClipRequest& request, const 
   RequireReadable(request.body, "body model");
   RequireWritableFolder(request.out);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
-  const Motion motion = LoadMotionSource(request.motion, *body);
+  const Motion motion = LoadMotionSource(request.motion, *body, callbacks);
   callbacks.Update("observe", 0);
   SynthClipOptions options = request.clip;
   if (request.realistic) {

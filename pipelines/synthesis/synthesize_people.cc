@@ -41,7 +41,8 @@ std::string CommandLine(const SynthesizePeopleRequest& c) {
 }
 
 /// Those that are long enough, at the common rate; `too_short` counts the others.
-std::vector<Motion> LoadMotions(const SynthesizePeopleRequest& request, const BodyModel& body, int* too_short) {
+std::vector<Motion> LoadMotions(const SynthesizePeopleRequest& request, const BodyModel& body,
+                                const PipelineCallbacks& callbacks, int* too_short) {
   std::vector<Motion> motions;
   const int length = (request.set.frames - 1) * request.set.every + 1;
   const auto take = [&](const Motion& motion) {
@@ -62,7 +63,9 @@ std::vector<Motion> LoadMotions(const SynthesizePeopleRequest& request, const Bo
     take(LoadMotionSource({.name = name}, body));
   }
   if (!folders.empty()) {
-    VisitMotionLibrary(folders, {}, [&](LibraryClip&& clip) { take(clip.motion); });
+    const MotionLibrarySummary library =
+        VisitMotionLibrary(folders, {}, [&](LibraryClip&& clip) { take(clip.motion); });
+    for (const std::string& warning : library.warnings) callbacks.Message(warning);
   }
   if (motions.empty()) {
     throw RequestError("--motions: none is as long as a clip, " + std::to_string(length) +
@@ -80,7 +83,7 @@ SynthesizePeopleReport SynthesizePeople(const SynthesizePeopleRequest& request, 
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   SynthesizePeopleReport report;
   report.people = request.set.people;
-  const std::vector<Motion> motions = LoadMotions(request, *body, &report.motions_too_short);
+  const std::vector<Motion> motions = LoadMotions(request, *body, callbacks, &report.motions_too_short);
   callbacks.Update("people", 0);
   MakeMultiPersonDatasetOptions set = request.set;
   set.command = CommandLine(request);

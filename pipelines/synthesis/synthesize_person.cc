@@ -56,7 +56,7 @@ nlohmann::ordered_json LightJson(const PersonLight& light) {
 }
 
 /// All of them in one world with y up.
-Motion LoadMotions(const SynthesizePersonRequest& request, const BodyModel& body) {
+Motion LoadMotions(const SynthesizePersonRequest& request, const BodyModel& body, const PipelineCallbacks& callbacks) {
   const Eigen::Vector3d pelvis = body.RestJoints(Eigen::VectorXd::Zero(body.num_betas())).row(0).transpose();
   std::vector<Motion> motions;
   for (const std::string& name : request.motions) {
@@ -64,7 +64,7 @@ Motion LoadMotions(const SynthesizePersonRequest& request, const BodyModel& body
     source.name = name;
     for (const double speed : request.speeds) {
       source.speed = speed;
-      motions.push_back(LoadMotionSource(source, body));
+      motions.push_back(LoadMotionSource(source, body, callbacks));
       if (request.motions.size() > 1) motions.back() = ChangeUp(motions.back(), Motion::Up::kY, pelvis);
     }
   }
@@ -86,7 +86,7 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
   RequireWritable(request.sheet);
   RequireWritable(request.light);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
-  const Motion motion = LoadMotions(request, *body);
+  const Motion motion = LoadMotions(request, *body, callbacks);
   callbacks.Update("person", 0);
   MakeSinglePersonDatasetOptions set = request.set;
   set.motion.clear();

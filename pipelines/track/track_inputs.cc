@@ -135,7 +135,9 @@ void UseDetections(const TrackRequest& request, const PipelineCallbacks& callbac
     }
     options.min_confidence = request.min_confidence;
     options.convention = request.convention;
-    inputs->keypoints = LoadDetections(request.detections, options);
+    std::vector<std::string> warnings;
+    inputs->keypoints = LoadDetections(request.detections, options, &warnings);
+    for (const std::string& warning : warnings) callbacks.Message(warning);
     UseCameraPixels(request.detections, callbacks, *inputs, &*inputs->keypoints);
     AgreeOnImageSize(request.detections, inputs->keypoints->image_width, inputs->keypoints->image_height, &camera);
   }

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "apps/usage_error.h"
 #include "data_tools/formats/npz.h"
@@ -133,6 +134,49 @@ TEST_F(BadInput, OptionsThatContradictEachOtherAreUsageErrors) {
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--rig", "mixamo", "--out", o}, "--rig");
   ExpectUsageError({"export", "--track", d, "--what", "bvh", "--texture", d, "--out", o}, "--texture");
   ExpectUsageError({"body"}, "body: no verb");
+}
+
+TEST_F(BadInput, FaultsThatArePassedOverAreSaid) {
+  const auto frame = [](int t) {
+    std::string numbers;
+    for (int k = 0; k < 25; ++k) {
+      numbers += (k > 0 ? "," : "") + std::to_string(100 + t + 3 * k) + "," + std::to_string(50 + 7 * k) + ",0.9";
+    }
+    return R"({"people":[{"pose_keypoints_2d":[)" + numbers + "]}]}";
+  };
+  fs::create_directory(folder_ / "frames");
+  for (int t = 0; t < 5; ++t) Write("frames/f_" + std::to_string(t) + ".json", t == 3 ? "{\"peo" : frame(t));
+  const CommandResult planned = RunCommand({"track", "--plan", "--detections", folder_ / "frames", "--convention",
+                                            "body25", "--image-size", "640x480", "--out", folder_ / "o.npz"});
+  EXPECT_EQ(planned.exit_code, kExitOk) << planned.err;
+  EXPECT_THAT(planned.out, HasSubstr("1 of 5 files are empty, cut or no JSON and count as frames without detections, "
+                                     "the first f_3.json"));
+
+  ASSERT_EQ(RunCommand({"synth", "--motion", "demo", "--frames", "3", "--fps", "30", "--dense", "0", "--out",
+                        folder_ / "clip"})
+                .exit_code,
+            kExitOk);
+  ASSERT_EQ(RunCommand({"export", "--track", folder_ / "clip/truth.npz", "--what", "bvh", "--out", folder_ / "m.bvh"})
+                .exit_code,
+            kExitOk);
+  std::ifstream file(folder_ / "m.bvh");
+  std::string bvh{std::istreambuf_iterator<char>(file), {}};
+  const size_t at = bvh.find("Frames: 3");
+  ASSERT_NE(at, std::string::npos);
+  Write("n.bvh", bvh.replace(at, 9, "Frames:7"));
+  const CommandResult made =
+      RunCommand({"synth", "--motion", folder_ / "n.bvh", "--dense", "0", "--out", folder_ / "again"});
+  EXPECT_EQ(made.exit_code, kExitOk) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("n.bvh: 3 whole frames, the header says 7"));
+
+  // AMASS has 16 shape components, the built-in body 10.
+  ASSERT_EQ(RunCommand({"export", "--track", folder_ / "clip/truth.npz", "--what", "smplx", "--out", folder_ / "s.npz"})
+                .exit_code,
+            kExitOk);
+  const CommandResult shaped =
+      RunCommand({"synth", "--motion", folder_ / "s.npz", "--dense", "0", "--out", folder_ / "shaped"});
+  EXPECT_EQ(shaped.exit_code, kExitOk) << shaped.err;
+  EXPECT_THAT(shaped.out, HasSubstr("s.npz: of 16 shape components the first 10 are taken"));
 }
 
 TEST_F(BadInput, UnwritableOutputIsSaidBeforeAnythingIsRead) {

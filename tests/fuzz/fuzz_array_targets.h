@@ -21,6 +21,7 @@
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/observations/part_labels.h"
+#include "data_tools/observations/videopose3d_reader.h"
 #include "tests/fuzz/fuzz_targets.h"
 
 namespace bodyloom::fuzz {
@@ -58,6 +59,16 @@ inline bool AcceptsObservations(const std::string& bytes) {
     if (sequence.timestamps.size() != sequence.frames.size()) throw std::logic_error("frames without a time");
   });
   return sparse || dense;
+}
+
+/// VideoPose3D's two tables as consecutive pickles: positions_2d, metadata.
+inline bool AcceptsVideoPose3d(const std::string& bytes) {
+  return Accepts([&] {
+    size_t offset = 0;
+    const PicklePtr positions = ReadPickleAt(PickleDialect::kPlain, bytes, &offset, "fuzz.npz");
+    const PicklePtr metadata = ReadPickleAt(PickleDialect::kPlain, bytes, &offset, "fuzz.npz");
+    CheckKeypoints(VideoPose3dFromObjects(*positions, *metadata, "fuzz.npz", "", 30, ""));
+  });
 }
 
 inline bool AcceptsPartLabels(const std::string& bytes) {

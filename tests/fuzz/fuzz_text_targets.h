@@ -15,12 +15,15 @@
 #include "data_tools/observations/blazepose_reader.h"
 #include "data_tools/observations/coco_reader.h"
 #include "data_tools/observations/colmap_reader.h"
+#include "data_tools/observations/deeplabcut_reader.h"
 #include "data_tools/observations/load_camera_path.h"
 #include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/mmpose_reader.h"
 #include "data_tools/observations/openpose_reader.h"
 #include "data_tools/observations/pose2sim_toml.h"
 #include "data_tools/observations/rig_io.h"
+#include "data_tools/observations/ultralytics_reader.h"
+#include "data_tools/observations/vitpose_reader.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {
@@ -38,14 +41,20 @@ inline void CheckPeople(const PeopleSequence& people) {
 /// Every reader must accept or reject the file, regardless of its format.
 inline bool AcceptsDetections(const std::string& bytes) {
   nlohmann::json json;
-  if (!Accepts([&] { json = ParseJson(bytes, "fuzz.json"); })) return false;
+  if (!Accepts([&] { json = ParseJsonLines(bytes, "fuzz.json", {.nan_is_null = true}); })) return false;
   const JsonNode document(json, "fuzz.json");
   bool taken = false;
   if (IsOpenPoseJson(document)) taken |= Accepts([&] { CheckPeople(OpenPoseFromJson(document, 30)); });
   if (IsMmposeJson(document)) taken |= Accepts([&] { CheckPeople(MmposeFromJson(document, 30)); });
   if (IsCocoJson(document)) taken |= Accepts([&] { CheckPeople(CocoFromJson(document, 30)); });
+  if (IsUltralyticsJson(document)) taken |= Accepts([&] { CheckPeople(UltralyticsFromJson(document, 30)); });
+  if (IsVitPoseJson(document)) taken |= Accepts([&] { CheckPeople(VitPoseFromJson(document, 30)); });
   if (IsBlazePoseJson(document)) taken |= Accepts([&] { CheckPeople(BlazePoseFromJson(document, 30)); });
   return taken;
+}
+
+inline bool AcceptsDeepLabCut(const std::string& bytes) {
+  return Accepts([&] { CheckPeople(DeepLabCutFromCsv(bytes, "fuzz.csv", 30)); });
 }
 
 /// Reads the input as JSON and as Pose2Sim's TOML.

@@ -156,7 +156,7 @@ std::vector<std::string> IuvFilesOf(const std::string& folder) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (name.ends_with(kIuvEnding)) names.push_back(name);
+    if (name.ends_with(kIuvEnding) && !name.starts_with('.')) names.push_back(name);  // "._a": AppleDouble
   }
   std::sort(names.begin(), names.end());
   return names;

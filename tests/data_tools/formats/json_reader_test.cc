@@ -3,7 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "data_tools/formats/atomic_file.h"
 #include "tests/data_tools/formats/expect_file_error.h"
@@ -63,6 +66,67 @@ TEST(JsonReader, NumbersThatJsonDoesNotHave) {
   FileErrorOf("t.json", [&] { ParseJson("[1e999]", "t.json"); });
   FileErrorOf("t.json", [&] { ParseJson("[\"\xff\"]", "t.json"); });
   FileErrorOf("t.json", [&] { ParseJson("[1] 2", "t.json"); });
+}
+
+TEST(JsonReader, NanOfPythonBecomesNullWhereItIsAllowed) {
+  const JsonLimits limits = {.nan_is_null = true};
+  const nlohmann::json json = ParseJson(R"([NaN,1,-Infinity , Infinity,"NaN",-2,[NaN]])", "t.json", limits);
+  EXPECT_EQ(json, nlohmann::json::parse(R"([null,1,null,null,"NaN",-2,[null]])"));
+  const nlohmann::json numbers = ParseJson("[NaN, 1, -Infinity, 2]", "t.json", limits);
+  const JsonNode node(numbers, "t.json");
+  const std::vector<double> values = node.NumbersOrNan(4);
+  EXPECT_TRUE(std::isnan(values[0]) && std::isnan(values[2]));
+  EXPECT_EQ(values[3], 2);
+  EXPECT_TRUE(std::isnan(node.At(0).NumberOrNan()));
+  EXPECT_EQ(node.At(1).NumberOrNan(), 1);
+  EXPECT_THAT(FileErrorOf("t.json", [&] { (void)node.Numbers(); }), HasSubstr("found null after 0 numbers"));
+  EXPECT_THAT(FileErrorOf("t.json", [&] { (void)node.NumbersOrNan(3); }), HasSubstr("4 numbers, expected 3"));
+  // Other words are no numbers, and a fault behind NaN is reported at its own byte, as without them.
+  EXPECT_THAT(FileErrorOf("t.json", [&] { ParseJson("[Nan]", "t.json", limits); }), HasSubstr("byte 1"));
+  EXPECT_THAT(FileErrorOf("t.json", [&] { ParseJson("[Inf]", "t.json", limits); }), HasSubstr("byte 1"));
+  EXPECT_THAT(FileErrorOf("t.json", [&] { ParseJson("[NaN,NaN,-Infinity,x]", "t.json", limits); }),
+              HasSubstr("byte 20: not valid"));
+  EXPECT_THAT(FileErrorOf("t.json", [&] { ParseJson("[111,222,-33333333,x]", "t.json", limits); }),
+              HasSubstr("byte 20: not valid"));
+}
+
+TEST(JsonReader, AByteOrderMarkIsPassedOver) {
+  EXPECT_EQ(ParseJson("\xEF\xBB\xBF[1]", "t.json"), nlohmann::json::parse("[1]"));
+  EXPECT_EQ(ParseJsonLines("\xEF\xBB\xBF[1]\n[2]", "t.json"), nlohmann::json::parse("[[1],[2]]"));
+  FileErrorOf("t.json", [&] { ParseJson("\xEF\xBB[1]", "t.json"); });
+}
+
+TEST(JsonLines, SeveralValuesAreTheArrayOfThem) {
+  const auto parse = [](const std::string& text) {
+    std::vector<std::string> warnings;
+    nlohmann::json json = ParseJsonLines(text, "l.json", {.nan_is_null = true}, &warnings);
+    EXPECT_TRUE(warnings.empty());
+    return json;
+  };
+  const nlohmann::json two = nlohmann::json::parse(R"([{"a":"}\n{"},{"b":[null]}])");
+  EXPECT_EQ(parse("{\"a\":\"}\\n{\"}\n{\"b\":[NaN]}\n"), two);
+  EXPECT_EQ(parse("  {\"a\":\"}\\n{\"}\r\n\r\n{\"b\":[null]}"), two);
+  EXPECT_EQ(parse("[1] [2][]"), nlohmann::json::parse("[[1],[2],[]]"));
+  EXPECT_EQ(parse("[1,2]"), nlohmann::json::parse("[1,2]")) << "a single value is itself";
+  EXPECT_EQ(parse("7"), nlohmann::json(7));
+}
+
+TEST(JsonLines, ACutEndIsLeftOutWithAWarningAndOtherFaultsAreErrors) {
+  std::vector<std::string> warnings;
+  EXPECT_EQ(ParseJsonLines("{\"a\":1}\n{\"a\":2}\n{\"a\":[3", "l.json", {}, &warnings),
+            nlohmann::json::parse(R"([{"a":1},{"a":2}])"));
+  EXPECT_THAT(warnings, ElementsAre("l.json: the last of 3 JSON values is cut off and left out"));
+  EXPECT_EQ(ParseJsonLines("[1]\n[2", "l.json").size(), 1U) << "without anyone to warn";
+  const auto error = [](const std::string& text) {
+    return FileErrorOf("l.json", [&] { ParseJsonLines(text, "l.json"); });
+  };
+  EXPECT_THAT(error("{\"a\":1},{\"a\":2}"), HasSubstr("byte 7: found ',' between two JSON values"));
+  EXPECT_THAT(error("[1]\n[2}\n[3]"), HasSubstr("byte"));
+  EXPECT_THAT(error("[1]\n[x]\n[3]"), HasSubstr("byte 6: not valid JSON"));
+  EXPECT_THAT(error("[1"), HasSubstr("not valid JSON"));
+  EXPECT_THAT(error("[1]\n[NaN]"), HasSubstr("byte 5: found NaN"));
+  EXPECT_THAT(error("[1] x [2]"), HasSubstr("found 'x'"));
+  EXPECT_THAT(error("[1] [2] x"), HasSubstr("found 'x'"));
 }
 
 TEST(JsonReader, SizeLimit) {

@@ -13,6 +13,8 @@
 #include "data_tools/formats/element_type.h"
 #include "data_tools/formats/zip.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/data_tools/formats/object_npy_bytes.h"
+#include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
 namespace bodyloom::npz_test {
@@ -204,6 +206,21 @@ TEST(Npz, ObjectArrayBesideOthersIsCarriedButNeverRead) {
   EXPECT_EQ(arrays.at("part2num").dtype, DType::kOther);
   EXPECT_THAT(FileErrorOf("m.npz", [&] { RequireArray(arrays, "part2num", "m.npz"); }), HasSubstr("never read"));
   EXPECT_THROW((void)arrays.at("part2num").ToDoubles(), std::invalid_argument);
+}
+
+TEST(Npz, AnObjectThatIsANumberOrTextIsThat) {
+  const NpzArrays arrays =
+      ReadNpzBytes(MakeZip({{"rate.npy", ObjectNpyBytes(pickle_writer::Int(120))},
+                            {"half.npy", ObjectNpyBytes(std::string("G\x3f\xe0\0\0\0\0\0\0", 9), "(1,)")},
+                            {"gender.npy", ObjectNpyBytes(pickle_writer::Unicode("female"))},
+                            {"table.npy", ObjectNpyBytes(pickle_writer::Dict({}))},
+                            {"two.npy", ObjectNpyBytes(pickle_writer::Int(1) + pickle_writer::Int(2), "(2,)")},
+                            {"none.npy", ObjectNpyBytes("N")}}),
+                   "m.npz");
+  EXPECT_EQ(RequireArray(arrays, "rate", "m.npz").ToDoubles(), std::vector<double>{120});
+  EXPECT_EQ(RequireArray(arrays, "half", "m.npz").ToDoubles(), std::vector<double>{0.5});
+  EXPECT_EQ(RequireArray(arrays, "gender", "m.npz").ToStrings(), std::vector<std::string>{"female"});
+  for (const char* name : {"table", "two", "none"}) EXPECT_EQ(arrays.at(name).dtype, DType::kOther) << name;
 }
 
 TEST(Npz, RefusesEveryTruncation) {

@@ -15,15 +15,18 @@
 #include "data_tools/learned/lifter_weights_io.h"
 #include "data_tools/learned/parser_weights_io.h"
 #include "data_tools/learned/pose_prior_io.h"
+#include "data_tools/observations/keypoint_conventions.h"
 #include "data_tools/observations/mask_runs.h"
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_writer.h"
 #include "tests/data_tools/datasets/video_truth_files.h"
 #include "tests/data_tools/estimates/estimate_files.h"
+#include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/support/random_image_unet.h"
+#include "tests/support/stick_person.h"
 #include "tests/support/toy_body.h"
 
 namespace bodyloom::fuzz {
@@ -215,6 +218,29 @@ std::vector<std::string> VideoTruthSeeds() {
   return {EmdbPickle(track, good, "male"), ThreeDpwPickle({track, track}, {good, good})};
 }
 
+/// positions_2d and metadata of a set of one video, one after the other.
+std::string VideoPose3dPickles() {
+  using namespace pickle_writer;  // NOLINT(google-build-using-namespace)
+  const std::string cameras = "](" + Doubles2(std::vector<double>(2 * 17 * 2, 50), {2, 17, 2}) + "e";
+  return Pickle(2, Dict({{Str2("a.mp4"), Dict({{Str2("custom"), cameras}})}})) +
+         Pickle(2, Dict({{Str2("layout_name"), Str2("coco")},
+                         {Str2("keypoints_symmetry"), "](](" + Int(1) + "e](" + Int(2) + "ee"},
+                         {Str2("video_metadata"),
+                          Dict({{Str2("a.mp4"), Dict({{Str2("w"), Int(640)}, {Str2("h"), Int(480)}})}})}}));
+}
+
+/// COCO's landmarks with confidences as a bare array.
+std::string KeypointArrayBytes() {
+  std::vector<double> values;
+  for (int t = 0; t < 2; ++t) {
+    for (const std::string& name : Coco17().names) {
+      const auto [x, y] = StickLandmark(name, 100, 200, 300);
+      values.insert(values.end(), {x, y, 0.5});
+    }
+  }
+  return NpyBytes(NdArray::FromDoubles(values.data(), {2, 17, 3}));
+}
+
 }  // namespace
 
 void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
@@ -223,6 +249,7 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   const auto write = [&](const std::string& path) { WriteObservations(path, &keypoints, &dense); };
   (*seeds)["observations"] = {FramedBytesOf(write)};
   (*seeds)["part_labels"] = {PartLabels(), Masks()};
+  (*seeds)["videopose3d"] = {VideoPose3dPickles()};
   for (const bool has_garment : {false, true}) {
     (*seeds)["avatar"].push_back(
         FramedBytesOf([&](const std::string& path) { WriteAvatarCheckpoint(path, SmallAvatar(has_garment)); }));
@@ -236,6 +263,8 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   (*seeds)["detections_file"].push_back(BytesOf("observations.npz", write));
   const std::vector<double> landmarks(2 * 33 * 2, 100);
   (*seeds)["detections_file"].push_back(NpyBytes(NdArray::FromDoubles(landmarks.data(), {2, 33, 2})));
+  (*seeds)["detections_file"].push_back(KeypointArrayBytes());
+  (*seeds)["detections_file"].push_back((*seeds)["deeplabcut"][0]);
   (*seeds)["estimate"] = EstimateSeeds();
   (*seeds)["video_truth"] = VideoTruthSeeds();
   Image image(6, 4, {12, 200, 3});

@@ -17,6 +17,8 @@ TEST(FuzzCorpus, Body) { RunMutations("body", AcceptsBody, 3000); }
 TEST(FuzzCorpus, Track) { RunMutations("track", AcceptsTrack, 4000); }
 TEST(FuzzCorpus, Obj) { RunMutations("obj", AcceptsObj, 4000); }
 TEST(FuzzCorpus, Detections) { RunMutations("detections", AcceptsDetections, 6000); }
+TEST(FuzzCorpus, DeepLabCut) { RunMutations("deeplabcut", AcceptsDeepLabCut, 4000); }
+TEST(FuzzCorpus, VideoPose3d) { RunMutations("videopose3d", AcceptsVideoPose3d, 4000); }
 TEST(FuzzCorpus, Cameras) { RunMutations("cameras", AcceptsCameras, 4000); }
 TEST(FuzzCorpus, Rig) { RunMutations("rig", AcceptsRig, 4000); }
 TEST(FuzzCorpus, CameraPath) { RunMutations("camera_path", AcceptsCameraPath, 4000); }

@@ -27,6 +27,28 @@ std::string MmposeFrame(int number) {
          R"(],"keypoint_scores":[)" + scores + R"(],"bbox":[[0,0,9,9]]}]})";
 }
 
+/// An image's detections as Ultralytics writes them.
+std::string UltralyticsFrame(int track_id) {
+  std::string xs, ys, confidences;
+  for (const std::string& name : Coco17().names) {
+    const auto [x, y] = StickLandmark(name, 100, 200, 300);
+    xs += (xs.empty() ? "" : ",") + std::to_string(x);
+    ys += (ys.empty() ? "" : ",") + std::to_string(y);
+    confidences += confidences.empty() ? "0.5" : ",0.5";
+  }
+  return R"([{"name":"person","class":0,"confidence":0.9,"box":{"x1":0},"track_id":)" + std::to_string(track_id) +
+         R"(,"keypoints":{"x":[)" + xs + R"(],"y":[)" + ys + R"(],"visible":[)" + confidences + "]}}]";
+}
+
+std::string VitPoseFile() {
+  std::string points;
+  for (const std::string& name : Coco17().names) {
+    const auto [x, y] = StickLandmark(name, 100, 200, 300);
+    points += (points.empty() ? "[" : ",[") + std::to_string(y) + "," + std::to_string(x) + ",0.5]";
+  }
+  return R"({"keypoints":[{"0":[)" + points + R"(],"7":[)" + points + R"(]},{}],"skeleton":{"0":"nose"}})";
+}
+
 std::string DeepMimicFrame(const std::string& seconds) {
   std::string text = seconds + ",0.1,0.9,0.2,1,0,0,0";
   for (const int n : {4, 4, 4, 1, 4, 4, 1, 4, 1, 4, 4, 1}) text += n == 4 ? ",1,0,0,0" : ",0.5";
@@ -69,7 +91,16 @@ void AddTextSeeds(std::map<std::string, std::vector<std::string>>* seeds) {
       "[" + CocoResult(3) + "," + CocoResult(5) + "," + CocoResult(5) + "]",
       "[" + MmposeFrame(0) + "," + MmposeFrame(2) + "]",
       R"({"meta_info":{"keypoint_id2name":{"0":"nose"}},"instance_info":[)" + MmposeFrame(1) + "]}",
+      "[" + UltralyticsFrame(3) + ",[]," + UltralyticsFrame(3) + "]",
+      "\xEF\xBB\xBF" + CocoResult(3) + "\n" + CocoResult(4) + "\n",
+      "[" + MmposeFrame(0).replace(MmposeFrame(0).find("0.5"), 3, "NaN") + "]",
+      VitPoseFile(),
   };
+  (*seeds)["deeplabcut"] = {
+      "scorer,net,net,net,net,net,net\nbodyparts,nose,nose,nose,LHip,LHip,LHip\ncoords,x,y,likelihood,x,y,likelihood\n"
+      "0,100,50,0.9,120,80,0.8\n2,101,51,0.5,,,\n",
+      "scorer,n,n,n,n,n\nindividuals,a,a,b,b,single\nbodyparts,nose,nose,nose,nose,ball\ncoords,x,y,x,y,x\n"
+      "img1.png,1,2,3,4,5\r\nimg2.png,1,2,3,nan,5\r\n"};
   (*seeds)["cameras"] = {
       R"([{"name":"c01","size":[1920,1080],"matrix":[[1310,0,960],[0,1312,540],[0,0,1]],"distortions":[-0.1,0,0,0,0],)"
       R"("rotation":[3.1,0,0],"translation":[-3,180,450]}])",

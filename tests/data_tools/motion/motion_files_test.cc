@@ -11,6 +11,7 @@
 
 #include "data_tools/body/body_landmarks.h"
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/zip.h"
 #include "data_tools/motion/aist_motion.h"
 #include "data_tools/motion/amass.h"
 #include "data_tools/motion/bvh_reader.h"
@@ -21,6 +22,7 @@
 #include "geometry/body/posed_body.h"
 #include "geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"
+#include "tests/data_tools/formats/object_npy_bytes.h"
 #include "tests/data_tools/formats/pickle_writer.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
@@ -87,6 +89,61 @@ TEST(Amass, EveryFamilyAndBothSpellings) {
   }
 }
 
+TEST(Amass, FilesThatWereWrittenAgain) {
+  const Motion expected = AmassFromNpz(AmassArrays(3, 72, "mocap_framerate"), "a.npz");
+  std::vector<std::string> warnings;
+  const auto read = [&](const auto& change) {
+    NpzArrays arrays = AmassArrays(3, 72, "fps");
+    change(&arrays);
+    return AmassFromNpz(arrays, "a.npz", &warnings);
+  };
+  const Motion by_joint = read([](NpzArrays* a) { (*a)["poses"].shape = {3, 24, 3}; });
+  EXPECT_EQ(by_joint.poses, expected.poses);
+  EXPECT_EQ(by_joint.timestamps, expected.timestamps) << "the rate is called fps";
+  const Motion in_parts = read([](NpzArrays* a) {
+    std::vector<double> root, body;
+    const std::vector<double> poses = (*a)["poses"].ToDoubles();
+    for (size_t t = 0; t < 3; ++t) {
+      root.insert(root.end(), &poses[72 * t], &poses[72 * t] + 3);
+      body.insert(body.end(), &poses[72 * t] + 3, &poses[72 * t] + 66);
+    }
+    a->erase("poses");
+    (*a)["root_orient"] = NdArray::FromDoubles(root.data(), {3, 3});
+    (*a)["pose_body"] = NdArray::FromDoubles(body.data(), {3, 63});
+    EXPECT_TRUE(IsAmass(*a));
+  });
+  EXPECT_EQ(in_parts.poses.leftCols(66), expected.poses.leftCols(66));
+  EXPECT_TRUE(in_parts.poses.rightCols(6).isZero());
+  const double equal[] = {1, 2, 3, 4, 1, 2, 3, 4, 1, 2, 3, 4}, differ[] = {1, 2, 3, 4, 1, 2, 3, 4, 4, 2, 0, 4};
+  EXPECT_EQ(read([&](NpzArrays* a) { (*a)["betas"] = NdArray::FromDoubles(equal, {3, 4}); }).betas, expected.betas);
+  EXPECT_EQ(read([&](NpzArrays* a) { (*a)["betas"] = NdArray::FromDoubles(equal, {1, 4}); }).betas, expected.betas);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_TRUE(read([&](NpzArrays* a) {
+                (*a)["betas"] = NdArray::FromDoubles(differ, {3, 4});
+              }).betas.isApprox(Eigen::Vector4d(2, 2, 2, 4), 1e-12));
+  EXPECT_THAT(warnings,
+              ::testing::ElementsAre(HasSubstr("a.npz: betas: a shape for each of 3 frames, of which the mean")));
+  EXPECT_THAT(FileErrorOf("a.npz", [&] { read([](NpzArrays* a) {
+                                           (*a)["poses"].shape = {3, 36, 2};
+                                         }); }),
+              HasSubstr("poses: shape 3x36x2"));
+  EXPECT_THAT(
+      FileErrorOf("a.npz", [&] { read([&](NpzArrays* a) {
+                                   (*a)["betas"] = NdArray::FromDoubles(equal, {2, 4});
+                                 }); }),
+      HasSubstr("betas: shape 2x4"));
+}
+
+TEST(Amass, ObjectsThatHoldTheRateOrTheGender) {
+  NpzArrays arrays = AmassArrays(3, 72, "x");
+  std::vector<ZipMember> members = {{"mocap_framerate.npy", ObjectNpyBytes(pickle_writer::Int(120))},
+                                    {"gender.npy", ObjectNpyBytes(pickle_writer::Unicode("female"))}};
+  for (const char* name : {"poses", "trans", "betas"}) {
+    members.push_back({std::string(name) + ".npy", NpyBytes(arrays.at(name))});
+  }
+  EXPECT_NEAR(MotionFromBytes(MakeZip(members), "a.npz").timestamps[2], 2 / 120.0, 1e-12);
+}
+
 TEST(Amass, MalformedArrays) {
   const auto error = [](const auto& change) {
     NpzArrays arrays = AmassArrays(3, 156, "mocap_framerate");
@@ -108,7 +165,7 @@ TEST(Amass, MalformedArrays) {
   EXPECT_THAT(error([](NpzArrays* a) { a->erase("mocap_framerate"); }), HasSubstr("neither 'mocap_framerate'"));
   EXPECT_THAT(error([&](NpzArrays* a) { (*a)["mocap_framerate"] = NdArray::FromDouble(-1); }),
               HasSubstr("frames a second"));
-  EXPECT_THAT(error([](NpzArrays* a) { (*a)["betas"] = AmassArrays(3, 10, "x")["poses"]; }),
+  EXPECT_THAT(error([](NpzArrays* a) { (*a)["betas"] = AmassArrays(4, 10, "x")["poses"]; }),
               HasSubstr("one shape for the clip"));
   EXPECT_THAT(error([](NpzArrays* a) { a->erase("trans"); }), HasSubstr("trans"));
   EXPECT_THAT(error([](NpzArrays* a) { (*a)["up_axis"] = NdArray::FromString("w"); }), HasSubstr("up_axis"));

@@ -65,13 +65,13 @@ TEST(FreeMocap, SaysWhatTheArrayIs) {
   EXPECT_THAT(ErrorOf({2, 3, 553, 2}, ""), HasSubstr("no view chosen; the file has 2 cameras, 0 to 1"));
   EXPECT_THAT(ErrorOf({2, 3, 553, 2}, "c01"), HasSubstr("no view 'c01'"));
   EXPECT_THAT(ErrorOf({3, 33, 3}), HasSubstr("3D points, which are no detections of one camera"));
-  EXPECT_THAT(ErrorOf({2, 3, 17, 2}), HasSubstr("17 points, expected MediaPipe's 33"));
+  EXPECT_THAT(ErrorOf({2, 3, 19, 2}), HasSubstr("19 points, expected 17 (COCO)"));
   const double one = 1;
   EXPECT_THAT(FileErrorOf("f.npy",
                           [&] {
                             DetectionsFromBytes(NpyBytes(NdArray::FromDoubles(&one, {1, 1})), "f.npy");
                           }),
-              HasSubstr("an array of 1x1, expected FreeMoCap's 2D"));
+              HasSubstr("expected landmarks, frames x points x 3 (x, y in pixels, confidence) or FreeMoCap's 2D"));
   EXPECT_THAT(ErrorOf({2, 0, 33, 2}), HasSubstr("frames"));
 }
 

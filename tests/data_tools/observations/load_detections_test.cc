@@ -51,6 +51,62 @@ TEST_F(LoadDetectionsTest, CocoResults) {
   EXPECT_NEAR(sequence.timestamps[0], 0.1, 1e-12);
 }
 
+TEST_F(LoadDetectionsTest, FilesAsDisksHaveThem) {
+  const std::string list = "[" + CocoEntry("3", 300) + "," + CocoEntry("4", 310) + "," + CocoEntry("5", 320) + "]";
+  const auto expect_three = [&](const KeypointSequence& sequence) {
+    ASSERT_EQ(sequence.num_frames(), 3);
+    EXPECT_NEAR(sequence.at(1, 0).x, 310, 1e-3);
+    EXPECT_NEAR(sequence.timestamps[0], 0.1, 1e-12);
+  };
+  expect_three(LoadDetections(Write("bom.json", "\xEF\xBB\xBF" + list)));
+  const std::string lines = CocoEntry("3", 300) + "\n" + CocoEntry("4", 310) + "\n" + CocoEntry("5", 320) + "\n";
+  std::vector<std::string> warnings;
+  expect_three(LoadDetections(Write("lines.jsonl", lines), {}, &warnings));
+  EXPECT_TRUE(warnings.empty());
+  expect_three(LoadDetections(Write("cut.jsonl", lines + CocoEntry("6", 330).substr(0, 50)), {}, &warnings));
+  EXPECT_THAT(warnings, ::testing::ElementsAre(HasSubstr("cut.jsonl: the last of 4 JSON values is cut off")));
+
+  std::string with_nan = list;
+  const size_t first = with_nan.find("\"keypoints\":[") + 13;
+  with_nan.replace(first, with_nan.find(',', first) - first, "NaN");
+  const KeypointSequence sequence = LoadDetections(Write("nan.json", with_nan));
+  expect_three(sequence);
+  EXPECT_EQ(sequence.at(0, 0).confidence, 0);
+  EXPECT_GT(sequence.at(0, 1).confidence, 0);
+}
+
+TEST_F(LoadDetectionsTest, NanAndNullAreMissingLandmarksOfEveryJson) {
+  std::string mmpose = R"({"keypoints":[[NaN,20])", scores = "0.5", blaze = "[[null,NaN,0,1]";
+  for (int k = 1; k < 17; ++k) mmpose += ",[" + std::to_string(10 * k) + ",20]", scores += ",0.5";
+  for (int k = 1; k < 33; ++k) blaze += ",[" + std::to_string(10 * k) + ",20,0,1]";
+  for (const std::string& text : {"[" + mmpose + R"(],"keypoint_scores":[)" + scores + "]}]", "[" + blaze + "]]"}) {
+    const KeypointSequence sequence = LoadDetections(Write("n.json", text));
+    EXPECT_EQ(sequence.at(0, 0).confidence, 0);
+    EXPECT_EQ(sequence.at(0, 3).x, 30);
+    EXPECT_GT(sequence.at(0, 3).confidence, 0);
+  }
+}
+
+TEST_F(LoadDetectionsTest, AFolderWithOneFileOfAWholeClip) {
+  const std::string folder = folder_.File("clip \xC3\xBC (1)");
+  std::filesystem::create_directory(folder);
+  WriteFileAtomically(folder + "/keypoints [a].json", "[" + CocoEntry("3", 300) + "," + CocoEntry("4", 310) + "]");
+  for (const std::string& path : {folder, folder + "/keypoints [a].json"}) {
+    const KeypointSequence sequence = LoadDetections(path);
+    ASSERT_EQ(sequence.num_frames(), 2);
+    EXPECT_NEAR(sequence.at(1, 0).x, 310, 1e-3);
+  }
+}
+
+TEST_F(LoadDetectionsTest, TheVaryingNumberOfImageNamesIsTheFrame) {
+  const KeypointSequence sequence = LoadDetections(Write(
+      "names.json", "[" + CocoEntry("\"a_60fps_9_1080p.jpg\"", 300) + "," + CocoEntry("\"a_60fps_11_1080p.jpg\"", 320) +
+                        "," + CocoEntry("\"a_60fps_10_1080p.jpg\"", 310) + "]"));
+  ASSERT_EQ(sequence.num_frames(), 3);
+  EXPECT_NEAR(sequence.at(2, 0).x, 320, 1e-3);
+  EXPECT_NEAR(sequence.timestamps[0], 0.3, 1e-12);
+}
+
 TEST_F(LoadDetectionsTest, AlphaPoseNamesIdentitiesAndConfidences) {
   std::string text =
       "[" + CocoEntry("\"0.jpg\"", 300, ",\"idx\":4") + "," + CocoEntry("\"1.jpg\"", 310, ",\"idx\":4") + "]";

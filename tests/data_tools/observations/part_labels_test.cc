@@ -152,6 +152,81 @@ TEST(PartLabels, TheKindOfLabelsIsOneOfTwo) {
   EXPECT_THAT(FileErrorOf("l.npz", [&] { PartLabelsFromNpz(archive, "l.npz"); }), HasSubstr("label_kind"));
 }
 
+TEST(PartLabels, WholeNumbersOfAnyTypeAreLabels) {
+  const std::vector<uint8_t> person = SmallPerson();
+  const std::vector<int32_t> wide(person.begin(), person.end());
+  std::vector<int64_t> wider(person.begin(), person.end());
+  NdArray int64 = NdArray::FromUInt8(nullptr, {0});
+  int64.dtype = DType::kI64, int64.item_size = 8, int64.shape = {1, 30, 40};
+  int64.bytes.assign(reinterpret_cast<const char*>(wider.data()), wider.size() * 8);
+  for (const NdArray& labels : {NdArray::FromInts32(wide.data(), {1, 30, 40}), int64}) {
+    const PartLabelSequence read = PartLabelsFromNpz({{"labels", labels}}, "l.npz");
+    EXPECT_EQ(read.PartAt(0, 10, 5), 2);
+    EXPECT_EQ(read.PartAt(0, 21, 24), 9);
+    EXPECT_EQ(read.PartAt(0, 9, 5), 0);
+  }
+  const auto error = [](int32_t label) {
+    const std::vector<int32_t> labels(1200, label);
+    return FileErrorOf("l.npz", [&] {
+      PartLabelsFromNpz({{"labels", NdArray::FromInts32(labels.data(), {1, 30, 40})}}, "l.npz");
+    });
+  };
+  EXPECT_THAT(error(256), HasSubstr("element 0 is 256, expected 0 to 255"));
+  EXPECT_THAT(error(-1), HasSubstr("element 0 is -1"));
+  EXPECT_THAT(error(25), HasSubstr("pixel (0, 0) is 25, expected 0 to 24"));
+}
+
+TEST(PartLabels, OneLabelAloneIsAMask) {
+  std::vector<uint8_t> bytes = SmallPerson();
+  for (const int white : {1, 255}) {
+    for (uint8_t& label : bytes) label = label != 0 ? uint8_t(white) : 0;
+    NpzArrays archive = Archive(bytes, {1, 30, 40});
+    const PartLabelSequence read = PartLabelsFromNpz(archive, "l.npz");
+    EXPECT_EQ(read.PartAt(0, 10, 5), 1);
+    EXPECT_EQ(read.part_of_chart[9], 1) << "every chart belongs to the person";
+    EXPECT_EQ(read.frames[0].Unpacked().height, 20);
+    archive["label_kind"] = NdArray::FromString("person");
+    EXPECT_EQ(PartLabelsFromNpz(archive, "l.npz").part_of_chart[9], 1);
+    archive["label_kind"] = NdArray::FromString("densepose");
+    if (white == 1) {
+      EXPECT_EQ(PartLabelsFromNpz(archive, "l.npz").part_of_chart[9], 9) << "said to be parts";
+    } else {
+      EXPECT_THAT(FileErrorOf("l.npz", [&] { PartLabelsFromNpz(archive, "l.npz"); }), HasSubstr("is 255"));
+    }
+  }
+  for (uint8_t& label : bytes) label = label != 0 ? 1 : 0;
+  NpzArrays booleans = Archive(bytes, {1, 30, 40});
+  booleans["labels"].dtype = DType::kBool;
+  EXPECT_EQ(PartLabelsFromNpz(booleans, "l.npz").part_of_chart[9], 1);
+  bytes[5 * 40 + 10] = 2;
+  EXPECT_EQ(PartLabelsFromNpz(Archive(bytes, {1, 30, 40}), "l.npz").part_of_chart[9], 9) << "two labels are parts";
+}
+
+TEST(PartLabels, ABareArrayIsTheLabels) {
+  const TemporaryFolder folder;
+  const std::vector<uint8_t> person = SmallPerson();
+  WriteNpy(folder.File("l.npy"), NdArray::FromUInt8(person.data(), {1, 30, 40}));
+  EXPECT_EQ(ReadPartLabels(folder.File("l.npy")).PartAt(0, 21, 24), 9);
+  WriteNpy(folder.File("s.npy"), NdArray::FromUInt8(person.data(), {30, 40}));
+  EXPECT_THAT(FileErrorOf("s.npy", [&] { ReadPartLabels(folder.File("s.npy")); }), HasSubstr("shape 30x40"));
+}
+
+TEST(PartLabels, FramesLastAreRefused) {
+  const auto error = [](NpzArrays archive) {
+    return FileErrorOf("l.npz", [&] { PartLabelsFromNpz(archive, "l.npz"); });
+  };
+  const std::vector<uint8_t> nothing(60 * 80 * 10, 0);
+  EXPECT_THAT(error(Archive(nothing, {60, 80, 10})),
+              HasSubstr("shape 60x80x10, which looks like height x width x frames; expected frames first "
+                        "(np.moveaxis(labels, -1, 0))"));
+  const std::vector<double> times(30, 0);
+  NpzArrays archive = Archive(nothing, {20, 80, 30});
+  archive["timestamps"] = NdArray::FromDoubles(times.data(), {30});
+  EXPECT_THAT(error(archive), HasSubstr("expected frames first"));
+  EXPECT_EQ(PartLabelsFromNpz(Archive(nothing, {10, 60, 80}), "l.npz").num_frames(), 10);
+  EXPECT_EQ(PartLabelsFromNpz(Archive(nothing, {2, 400, 60}), "l.npz").num_frames(), 2) << "a narrow image";
+}
+
 TEST(PartLabels, FarBlobsAreNotThePersonAndNearOnesAre) {
   std::vector<uint8_t> bytes = SmallPerson();
   bytes[5 * 40 + 38] = bytes[6 * 40 + 38] = 3;  // 16 px away

@@ -85,6 +85,16 @@ TEST(People, ConfidencesAreClampedAndNaNsMissing) {
   EXPECT_EQ(sequence.at(0, 5).confidence, 0);
 }
 
+TEST(People, ALandmarkThatIsNoNumberIsMissing) {
+  const double nan = std::nan("");
+  for (const Keypoint& p : {DetectedKeypoint(nan, 2, 1), DetectedKeypoint(1, nan, 1), DetectedKeypoint(1, 2, nan),
+                            DetectedKeypoint(INFINITY, 2, 1), DetectedKeypoint(1e300, 2, 1)}) {
+    EXPECT_EQ(p.confidence, 0);
+    EXPECT_EQ(p.x, 0);
+  }
+  EXPECT_EQ(DetectedKeypoint(1, 2, 0.5).y, 2);
+}
+
 TEST(People, NobodyIsAnError) {
   const PeopleSequence people = Clip(3);
   EXPECT_THAT(FileErrorOf("p.json", [&] { SelectPerson(people, 0, "p.json"); }), HasSubstr("no person in any of 3"));
@@ -98,6 +108,17 @@ TEST(FrameNumbers, FromNames) {
   EXPECT_EQ(FrameNumberFromName("take3_keypoints.json"), 3);
   EXPECT_EQ(FrameNumberFromName("frame.json"), -1);
   EXPECT_EQ(FrameNumberFromName("12345678901234567890.json"), -1);
+}
+
+TEST(FrameNumbers, TheNumberThatVariesCounts) {
+  EXPECT_THAT(FrameNumbersFromNames({"take2_60fps_7_1080p.json", "take2_60fps_12_1080p.json"}), ElementsAre(7, 12));
+  EXPECT_THAT(FrameNumbersFromNames({"a1_7_x264.jpg", "a1_7_x264.jpg", "a1_8_x264.jpg"}), ElementsAre(7, 7, 8));
+  EXPECT_THAT(FrameNumbersFromNames({"cam1_3.json", "cam2_4.json"}), ElementsAre(3, 4)) << "the last that varies";
+  EXPECT_THAT(FrameNumbersFromNames({"take2_60fps_7_1080p.json"}), ElementsAre(1080)) << "one name tells nothing";
+  EXPECT_THAT(FrameNumbersFromNames({"1_1080p.json", "x_1080p.json"}), ElementsAre(1080, 1080));
+  EXPECT_THAT(FrameNumbersFromNames({"a.json", "b2.json"}), ElementsAre(-1, 2));
+  EXPECT_THAT(FrameNumbersFromNames({}), ElementsAre());
+  EXPECT_THAT(NumbersOrOrder({"a.json", "b2.json"}), ElementsAre(0, 1));
 }
 
 TEST(FrameNumbers, Grid) {
