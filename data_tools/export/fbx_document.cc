@@ -67,7 +67,7 @@ int64_t FbxTime(double seconds) { return std::llround(seconds * kTicksPerSecond)
 int64_t FbxDocument::Add(const std::string& kind, const std::string& name, const std::string& class_name,
                          const std::string& subclass, const std::vector<FbxNode>& content) {
   FbxNode object(kind);
-  object.Long(++last_number_).Text(name + std::string("\0\1", 2) + class_name).Text(subclass).IsBlock();
+  object.Long(++last_number_).Text(name + std::string("\0\1", 2) + class_name).Text(subclass).MarkAsBlock();
   for (const FbxNode& node : content) object.Add(node);
   objects_.Add(std::move(object));
   ++count_[kind];
@@ -97,7 +97,7 @@ std::string FbxDocument::Bytes(double fps, double duration_s, const std::string&
   takes.Add(FbxNode("Current").Text(animation));
   return FbxBytes({FbxHeader(), FbxNode("FileId").Bytes(std::string(kFbxFileId, 16)),
                    FbxNode("CreationTime").Text(kFbxDate), FbxNode("Creator").Text("Bodyloom"),
-                   FbxSettings(fps, FbxTime(duration_s)), FbxDocuments(animation), FbxNode("References").IsBlock(),
+                   FbxSettings(fps, FbxTime(duration_s)), FbxDocuments(animation), FbxNode("References").MarkAsBlock(),
                    definitions, objects_, connections_, takes});
 }
 

@@ -85,7 +85,7 @@ FbxNode& FbxNode::Add(FbxNode node) {
   return *this;
 }
 
-FbxNode& FbxNode::IsBlock() {
+FbxNode& FbxNode::MarkAsBlock() {
   block_ = true;
   return *this;
 }
@@ -126,7 +126,7 @@ FbxNode FbxVector(const std::string& name, const std::string& type, std::initial
 
 FbxNode FbxProperties(std::initializer_list<FbxNode> values) {
   FbxNode node("Properties70");
-  node.IsBlock();
+  node.MarkAsBlock();
   for (const FbxNode& value : values) node.Add(value);
   return node;
 }

@@ -5,7 +5,7 @@
 ///                    of the name, name
 ///   properties       a letter for the type, then the value: C bool, I int32, L int64, D double; S text and R bytes
 ///                    with u32 length; arrays i, l, f, d: u32 count, u32 1, u32 bytes, values as a zlib stream
-///   nested records   and 13 zeros; nothing if there are none (IsBlock() otherwise)
+///   nested records   and 13 zeros; nothing if there are none, unless MarkAsBlock()
 /// All little-endian.
 /// Source: Blender developers' blog, "FBX binary file format specification"; the footer as in Assimp's FBXExporter.cpp.
 #pragma once
@@ -37,8 +37,8 @@ class FbxNode {
 
   /// Appends a nested record; returns *this.
   FbxNode& Add(FbxNode node);
-  /// Ends with zeros even if nothing is nested; returns *this.
-  FbxNode& IsBlock();
+  /// Makes the record end with zeros even if nothing is nested; returns *this.
+  FbxNode& MarkAsBlock();
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Appends the record to the bytes of a file, which begin with the file's first.

@@ -12,6 +12,7 @@ import pathlib
 import shlex
 import subprocess
 import tempfile
+import zipfile
 
 import bpy
 import numpy
@@ -48,11 +49,17 @@ def run_command(words):
 
 
 class Track:
-    """What the scene takes from a track: camera, times."""
+    """Camera and times of a track. Raises RuntimeError for a file that is none."""
 
     def __init__(self, path):
         self.path = path
-        with numpy.load(path, allow_pickle=False) as arrays:
+        try:
+            file = numpy.load(path, allow_pickle=False)
+        except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+            raise RuntimeError(f"{path}: {error}, expected a track of bodyloom") from error
+        if not isinstance(file, numpy.lib.npyio.NpzFile):
+            raise RuntimeError(f"{path}: one array, expected a track of bodyloom")
+        with file as arrays:
             for key in ("trans", "K", "image_size", "timestamps", "mocap_framerate", "camera_model"):
                 if key not in arrays:
                     raise RuntimeError(f"{path}: no key '{key}', expected a track of bodyloom")
@@ -227,7 +234,7 @@ class BODYLOOM_OT_run_video(bpy.types.Operator, ImportHelper):
             if bpy.app.background:
                 run_command(words)
                 return self._open()
-            self._log = tempfile.TemporaryFile(mode="w+", encoding="utf-8")
+            self._log = tempfile.NamedTemporaryFile()
             self._process = subprocess.Popen([preferences().command, *words], stdout=self._log, stderr=self._log)
         except (RuntimeError, OSError) as error:
             self.report({"ERROR"}, str(error))
@@ -242,8 +249,8 @@ class BODYLOOM_OT_run_video(bpy.types.Operator, ImportHelper):
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         code = self._process.poll()
-        self._log.seek(0)
-        last = (self._log.read().strip().splitlines() or [""])[-1]
+        log = pathlib.Path(self._log.name).read_text(encoding="utf-8", errors="replace")
+        last = (log.strip().splitlines() or [""])[-1]
         context.workspace.status_text_set(f"Bodyloom (Esc stops it): {last}" if code is None else None)
         if code is None:
             return {"PASS_THROUGH"}

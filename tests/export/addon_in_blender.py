@@ -89,7 +89,7 @@ def fails(operator, text, **arguments):
     except RuntimeError as error:
         check(text in str(error), f"'{error}', expected '{text}'")
         return
-    check(False, f"no failure with '{text}'")
+    sys.exit(f"Error: no failure with '{text}'")
 
 
 def main():
@@ -116,6 +116,11 @@ def main():
     check(any(o.type == "ARMATURE" for o in scene.objects) and len(bpy.data.movieclips) == 1, "the run was not opened")
     fails(bpy.ops.bodyloom.run_video, "no such file", filepath="none.mp4", out="other")
     fails(bpy.ops.bodyloom.open_results, "expected a results folder", filepath="scripts")
+    for garbage in (b"", b"no track", b"PK\x03\x04 and no more"):
+        pathlib.Path("garbage.npz").write_bytes(garbage)
+        fails(bpy.ops.bodyloom.open_results, "garbage.npz", filepath="garbage.npz")
+    fails(bpy.ops.bodyloom.open_results, "one array", filepath="silhouettes.npy")
+    fails(bpy.ops.bodyloom.open_results, "no key", filepath="results/observations.npz")
     preferences.command = "/nowhere/bodyloom"
     fails(bpy.ops.bodyloom.open_results, "preferences", filepath="results")
     print("judge: add-on: results, moved track, run and failures as they must be")
