@@ -24,6 +24,7 @@ constexpr const char* kExportFooter =
     "  amass      .npz as AMASS has it: SMPL-H's 156 pose columns, z up\n"
     "  smplx      .npz in AMASS' SMPL-X form, which GMR and other retargeters read: z up\n"
     "  bvh        for animation programs: centimetres; --rig\n"
+    "  fbx        for Unreal, Unity, MotionBuilder, Blender: as glb without ground, centimetres; --rig, --texture\n"
     "  glb        glTF 2.0: skinned, textured, animated bodies, camera and ground; several --track, --texture\n"
     "  trc, c3d   22 markers of HALPE_26 for OpenSim, Pose2Sim and others: metres, millimetres\n"
     "  colmap     a folder with the camera as a COLMAP text model; several --track\n"
@@ -60,7 +61,7 @@ void RefuseOptionsOfTracks(const CLI::App& verb, const std::string& form) {
 
 void AddExportVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand(
-      "export", "Writes tracks or cameras in another form: glTF, BVH, AMASS, TRC, C3D, COLMAP, arrays");
+      "export", "Writes tracks or cameras in another form: glTF, FBX, BVH, AMASS, TRC, C3D, COLMAP, arrays");
   verb->footer(std::string(kExportFooter) + kExitCodeHelp);
   auto request = std::make_shared<ExportTrackRequest>();
   auto form = std::make_shared<std::string>();
@@ -81,11 +82,11 @@ void AddExportVerb(CLI::App& app, Action* action) {
   verb->add_option("--axes", *axes, "vertices, joints, obj: camera or world")
       ->check(CLI::IsMember({"camera", "world"}))
       ->capture_default_str();
-  verb->add_option("--rig", *rig, "bvh: names and rest pose: smpl, mixamo (T-pose) or unreal (A-pose)")
-      ->check(CLI::IsMember(BvhRigNames()))
+  verb->add_option("--rig", *rig, "bvh, fbx: names and rest pose: smpl, mixamo, vrm (T-pose) or unreal (A-pose)")
+      ->check(CLI::IsMember(AnimationRigNames()))
       ->capture_default_str();
-  verb->add_option("--texture", c.textures, "glb: the person's texture, .png; by track")->type_name("FILE");
-  verb->add_option("--correctives", c.correctives, "glb: shapes that hold the pose correctives")
+  verb->add_option("--texture", c.textures, "glb, fbx: the person's texture, .png; by track")->type_name("FILE");
+  verb->add_option("--correctives", c.correctives, "glb, fbx: shapes that hold the pose correctives")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   verb->callback([=] {
@@ -101,7 +102,7 @@ void AddExportVerb(CLI::App& app, Action* action) {
         throw RequestError("--cameras is of rig-toml, rig-opencv and rig-colmap, not of " + *form);
       }
       request->form = TrackFormFromString(*form);
-      request->rig = BvhRigFromString(*rig);
+      request->rig = AnimationRigFromString(*rig);
       request->world_axes = *axes == "world";
       const ExportTrackReport report = ExportTrack(*request, CommandCallbacks());
       std::cout << ToText(report);

@@ -1,6 +1,6 @@
 # `cmake --install`: the command, the libraries with their public headers, and a package file for find_package(bodyloom).
 #   component     what
-#   command       bin/bodyloom, and share/bodyloom/models where ./dev models fetched them
+#   command       bin/bodyloom, share/bodyloom/blender, and share/bodyloom/models where ./dev models fetched them
 #   neural        bin/bodyloom-neural
 #   cgal          bin/bodyloom-cgal (GPL as a whole: apps/cgal/copyright)
 #   python        lib/python3/dist-packages/bodyloom (python/CMakeLists.txt)
@@ -73,6 +73,10 @@ endforeach()
 if(models_there AND TARGET bodyloom_command)
   install(FILES ${models} ${CMAKE_CURRENT_LIST_DIR}/models.txt
           DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/bodyloom/models COMPONENT command)
+endif()
+if(TARGET bodyloom_command)
+  install(FILES ${PROJECT_SOURCE_DIR}/python/blender/bodyloom_blender.py
+          DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/bodyloom/blender COMPONENT command)
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
         DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/libbodyloom-dev COMPONENT development)

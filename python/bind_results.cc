@@ -39,15 +39,16 @@ constexpr const char* kEvaluationDoc =
 
 constexpr const char* kExportDoc = R"(Writes a track for another program, whole or not at all.
 
-tracks      a Track or a file; a list of them, people of one clip, for "glb" and "colmap"
+tracks      a Track or a file; a list of them, people of one clip, for "glb", "fbx" and "colmap"
 out         the file, or for "obj" of all frames and "colmap" the folder
-form        "vertices", "joints" (.npy), "obj", "amass", "bvh", "glb", "smplx", "trc", "c3d", "colmap", "pose2sim"
+form        "vertices", "joints" (.npy), "obj", "amass", "bvh", "glb", "fbx", "smplx", "trc", "c3d", "colmap",
+            "pose2sim"
 body        Body that the tracks are of, or a file; None: the first track's own
 world_axes  of vertices, joints and obj: the clip's world (y up, ground at y = 0) instead of the camera frame
 frame       of obj: only this frame
-rig         of bvh: its skeleton
-textures    of glb: PNG files, one a track
-correctives of glb: shapes for pose correctives, 0 to 64
+rig         of bvh, fbx: names and rest pose: "smpl", "mixamo", "unreal", "vrm"
+textures    of glb, fbx: PNG files, one a track
+correctives of glb, fbx: shapes for pose correctives, 0 to 64
 docs/exports.md says what each form holds. Returns a few lines of text on what was written. Raises ValueError for
 arguments that do not go together, RuntimeError naming a file that cannot be used or a frame that is lost.)";
 
@@ -132,7 +133,7 @@ std::string ExportFromPython(const std::variant<TrackArgument, std::vector<Track
   request.form = TrackFormFromString(form);
   request.world_axes = world_axes;
   request.frame = frame.value_or(-1);
-  request.rig = BvhRigFromString(rig);
+  request.rig = AnimationRigFromString(rig);
   for (const Path& texture : textures) request.textures.push_back(texture.string());
   request.correctives = correctives;
   request.out = out.string();
@@ -164,7 +165,7 @@ void BindResults(py::module_& module) {
              py::arg("progress") = py::none(), kEvaluateDoc);
   module.def("export", &ExportFromPython, py::arg("tracks"), py::arg("out"), py::arg("form"), py::kw_only(),
              py::arg("body") = py::none(), py::arg("world_axes") = false, py::arg("frame") = py::none(),
-             py::arg("rig") = BvhRigNames()[size_t(defaults.rig)], py::arg("textures") = std::vector<Path>(),
+             py::arg("rig") = AnimationRigNames()[size_t(defaults.rig)], py::arg("textures") = std::vector<Path>(),
              py::arg("correctives") = defaults.correctives, py::arg("progress") = py::none(), kExportDoc);
 }
 

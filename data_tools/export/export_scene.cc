@@ -2,6 +2,7 @@
 #include "data_tools/export/export_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,6 +17,7 @@ namespace bodyloom {
 namespace {
 
 constexpr double kOneFrameRate = 30;
+constexpr double kLongestGap = 1.5;  ///< steps between frames without a gap
 
 /// Poses of a moving camera at the moments of all tracks.
 void AddCameraKeys(std::span<const Track* const> tracks, ExportScene* scene) {
@@ -34,6 +36,13 @@ void AddCameraKeys(std::span<const Track* const> tracks, ExportScene* scene) {
 }
 
 }  // namespace
+
+Eigen::Vector3d PersonColour(size_t number) {
+  static const std::array<Eigen::Vector3d, 4> colours = {
+      Eigen::Vector3d(0.62, 0.42, 0.33), Eigen::Vector3d(0.26, 0.42, 0.62), Eigen::Vector3d(0.30, 0.52, 0.36),
+      Eigen::Vector3d(0.55, 0.45, 0.60)};
+  return colours[number % colours.size()];
+}
 
 BodyPose PoseInWorld(const WorldFrame& world, const Eigen::Vector3d& rest_pelvis, BodyPose pose) {
   return MovedPose({world.rotation, world.translation}, rest_pelvis, std::move(pose));
@@ -59,6 +68,27 @@ CameraPose ExportScene::CameraAt(double seconds) const {
                             return std::abs(a.seconds - seconds) < std::abs(b.seconds - seconds);
                           })
       ->camera_from_world;
+}
+
+std::vector<PresenceKey> ExportScene::PresenceOf(const ExportPerson& person) const {
+  std::vector<PresenceKey> keys;
+  const auto push = [&](double seconds, bool present) {
+    // Files hold times in single precision.
+    if (keys.empty() || (keys.back().present != present && float(seconds) > float(keys.back().seconds))) {
+      keys.push_back({seconds, present});
+    }
+  };
+  const double step = 1 / fps;
+  if (person.seconds.front() > 0.5 * step) push(0, false);
+  push(person.seconds.front(), true);
+  for (size_t t = 1; t < person.seconds.size(); ++t) {
+    if (person.seconds[t] - person.seconds[t - 1] <= kLongestGap * step) continue;
+    push(person.seconds[t - 1] + 0.5 * step, false);
+    push(person.seconds[t], true);
+  }
+  if (person.seconds.back() < duration_s - 0.5 * step) push(person.seconds.back() + 0.5 * step, false);
+  if (keys.size() < 2) keys.clear();
+  return keys;
 }
 
 ExportScene MakeExportScene(std::span<const BodyModel* const> bodies, std::span<const Track* const> tracks,

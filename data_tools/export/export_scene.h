@@ -29,6 +29,12 @@ struct ExportCameraKey {
   CameraPose camera_from_world;
 };
 
+/// From this moment on a person is there, or is not.
+struct PresenceKey {
+  double seconds = 0;  ///< since the scene's start
+  bool present = true;
+};
+
 struct ExportScene {
   WorldFrame world;
   Camera camera;  ///< of the clip; a width of 0: the image size is unknown
@@ -41,7 +47,13 @@ struct ExportScene {
 
   /// Returns the key nearest in time to a moment of the scene.
   [[nodiscard]] CameraPose CameraAt(double seconds) const;
+  /// Returns when a person comes and goes, from the scene's start on, increasing; empty if the person is always there.
+  /// Somebody lost for more than one and a half steps goes half a step after the last frame.
+  [[nodiscard]] std::vector<PresenceKey> PresenceOf(const ExportPerson& person) const;
 };
+
+/// Colour of a person without a texture: red, green, blue in [0, 1]. Four colours take turns.
+Eigen::Vector3d PersonColour(size_t number);
 
 /// Transforms to the world the pose of a body whose pelvis joint rests at `rest_pelvis`, : with R, t of the world,
 /// R_root ← R·R_root and trans ← R(J0 + trans) + t − J0.

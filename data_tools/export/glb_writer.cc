@@ -3,13 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "data_tools/export/glb_buffer.h"
-#include "data_tools/export/skinned_mesh.h"
 #include "data_tools/formats/atomic_file.h"
 #include "geometry/base/check.h"
 #include "geometry/scene/camera_path.h"
@@ -22,9 +20,7 @@ using Eigen::Quaternionf;
 using Eigen::Vector3d;
 using GltfJson = nlohmann::ordered_json;
 
-constexpr double kGroundHalf_m = 3, kLongestGap = 1.5;  ///< of a step between frames
-constexpr std::array<std::array<double, 3>, 4> kGltfColours = {
-    {{0.62, 0.42, 0.33}, {0.26, 0.42, 0.62}, {0.30, 0.52, 0.36}, {0.55, 0.45, 0.60}}};
+constexpr double kGroundHalf_m = 3;
 
 /// Unit in float, and continued from the one before.
 Quaternionf QuaternionAfter(const Matrix3d& rotation, const Quaternionf* before) {
@@ -79,7 +75,7 @@ class SceneWriter {
     return json;
   }
   [[nodiscard]] const std::string& binary() const { return buffer_.bytes(); }
-  [[nodiscard]] const GlbSummary& summary() const { return summary_; }
+  [[nodiscard]] const SkinSummary& summary() const { return summary_; }
 
  private:
   int AddNode(GltfJson node, bool root = false) {
@@ -104,11 +100,9 @@ class SceneWriter {
     if (!mesh.shapes.empty()) body["weights"] = FirstWeights(mesh);
     const int body_node = AddNode(std::move(body), true);
     AddMotion(person, mesh, first, body_node);
-    const double n = double(summary_people_++);
-    summary_.rms_error_m = std::sqrt((n * std::pow(summary_.rms_error_m, 2) + std::pow(mesh.rms_error_m, 2)) / (n + 1));
-    summary_.max_error_m = std::max(summary_.max_error_m, mesh.max_error_m);
+    summary_.AddPerson(mesh.rms_error_m, mesh.max_error_m, mesh.shapes.size());
+    summary_.influences = kSkinInfluences;
     summary_.reduced_vertices += mesh.reduced_vertices;
-    summary_.shapes += static_cast<int>(mesh.shapes.size());
   }
 
   static GltfJson FirstWeights(const SkinnedMesh& mesh) {
@@ -161,7 +155,7 @@ class SceneWriter {
       textures_.push_back({{"sampler", 0}, {"source", images_.size() - 1}});
       surface["baseColorTexture"] = {{"index", textures_.size() - 1}};
     } else {
-      const auto& c = kGltfColours[number % kGltfColours.size()];
+      const Vector3d c = PersonColour(number);
       surface["baseColorFactor"] = {c[0], c[1], c[2], 1};
     }
     materials_.push_back({{"name", scene_.people[number].name}, {"pbrMetallicRoughness", surface}});
@@ -246,25 +240,12 @@ class SceneWriter {
 
   /// Scale 0 for people who are absent.
   void AddPresence(const ExportPerson& person, int first) {
-    std::vector<std::pair<double, float>> keys;
-    const auto push = [&](double seconds, float scale) {
-      if (keys.empty() || (keys.back().second != scale && float(seconds) > float(keys.back().first)))
-        keys.emplace_back(seconds, scale);
-    };
-    const double step = 1 / scene_.fps;
-    if (person.seconds.front() > 0.5 * step) push(0, 0);
-    push(person.seconds.front(), 1);
-    for (size_t t = 1; t < person.seconds.size(); ++t) {
-      if (person.seconds[t] - person.seconds[t - 1] <= kLongestGap * step) continue;
-      push(person.seconds[t - 1] + 0.5 * step, 0);
-      push(person.seconds[t], 1);
-    }
-    if (person.seconds.back() < scene_.duration_s - 0.5 * step) push(person.seconds.back() + 0.5 * step, 0);
-    if (keys.size() < 2) return;
+    const std::vector<PresenceKey> keys = scene_.PresenceOf(person);
+    if (keys.empty()) return;
     std::vector<float> times, scales;
-    for (const auto& [seconds, scale] : keys) {
-      times.push_back(static_cast<float>(seconds));
-      scales.insert(scales.end(), 3, scale);
+    for (const PresenceKey& key : keys) {
+      times.push_back(static_cast<float>(key.seconds));
+      scales.insert(scales.end(), 3, key.present ? 1.0F : 0.0F);
     }
     const int input = buffer_.AddFloats(times, "SCALAR", GlbBuffer::kNone, true);
     AddChannel(input, buffer_.AddFloats(scales, "VEC3"), first, "scale", "STEP");
@@ -338,8 +319,7 @@ class SceneWriter {
   const ExportScene& scene_;
   const GlbOptions& options_;
   GlbBuffer buffer_;
-  GlbSummary summary_;
-  int summary_people_ = 0;
+  SkinSummary summary_;
   GltfJson roots_ = GltfJson::array(), nodes_ = GltfJson::array(), meshes_ = GltfJson::array();
   GltfJson skins_ = GltfJson::array(), materials_ = GltfJson::array(), cameras_ = GltfJson::array();
   GltfJson images_ = GltfJson::array(), textures_ = GltfJson::array();
@@ -348,7 +328,7 @@ class SceneWriter {
 
 }  // namespace
 
-std::string GlbText(const ExportScene& scene, const GlbOptions& options, GlbSummary* summary) {
+std::string GlbText(const ExportScene& scene, const GlbOptions& options, SkinSummary* summary) {
   BODYLOOM_CHECK(!scene.people.empty(), "glTF: nobody to write");
   SceneWriter writer(scene, options);
   std::string bytes = GlbBytes(writer.Json(), writer.binary());
@@ -357,8 +337,8 @@ std::string GlbText(const ExportScene& scene, const GlbOptions& options, GlbSumm
   return bytes;
 }
 
-GlbSummary WriteGlb(const std::string& path, const ExportScene& scene, const GlbOptions& options) {
-  GlbSummary summary;
+SkinSummary WriteGlb(const std::string& path, const ExportScene& scene, const GlbOptions& options) {
+  SkinSummary summary;
   WriteFileAtomically(path, GlbText(scene, options, &summary));
   return summary;
 }

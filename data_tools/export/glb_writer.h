@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "data_tools/export/export_scene.h"
+#include "data_tools/export/skinned_mesh.h"
 
 namespace bodyloom {
 
@@ -28,17 +29,10 @@ struct GlbOptions {
   std::vector<std::string> textures = {};  ///< PNG file's bytes, by person; missing ones have one colour
 };
 
-struct GlbSummary {
-  double rms_error_m = 0, max_error_m = 0;  ///< of posed vertices to the bodies' own, of all people (skinned_mesh.h)
-  int reduced_vertices = 0;                 ///< that had more than four joints
-  int shapes = 0;                           ///< of all people
-  size_t bytes = 0;
-};
-
 /// Throws std::invalid_argument for options out of range, a texture that is no PNG, and more than 4 GiB.
-std::string GlbText(const ExportScene& scene, const GlbOptions& options, GlbSummary* summary);
+std::string GlbText(const ExportScene& scene, const GlbOptions& options, SkinSummary* summary);
 
 /// Writes the same to a file atomically; throws std::runtime_error when it cannot be written.
-GlbSummary WriteGlb(const std::string& path, const ExportScene& scene, const GlbOptions& options = {});
+SkinSummary WriteGlb(const std::string& path, const ExportScene& scene, const GlbOptions& options = {});
 
 }  // namespace bodyloom

@@ -19,16 +19,6 @@ using Eigen::VectorXd;
 
 constexpr int kBasisFrames = 256, kJudgedFrames = 64;
 
-/// Up to `most` of n, evenly spread, first and last among them.
-std::vector<int> SpreadFrames(int n, int maximum) {
-  std::vector<int> frames;
-  const int count = std::min(n, maximum);
-  frames.reserve(size_t(std::max(count, 0)));
-  for (int i = 0; i < count; ++i)
-    frames.push_back(count < 2 ? 0 : static_cast<int>(int64_t{i} * (n - 1) / (count - 1)));
-  return frames;
-}
-
 /// Corners with equal position and UV become one vertex.
 void SplitSeams(const BodyModelData& body, SkinnedMesh* mesh) {
   const bool has_uv = body.ft.rows() == body.faces.rows() && body.ft.rows() > 0;
@@ -188,8 +178,25 @@ void Judge(const ExportPerson& person, SkinnedMesh* mesh) {
 
 }  // namespace
 
+std::vector<int> SpreadFrames(int n, int maximum) {
+  std::vector<int> frames;
+  const int count = std::min(n, maximum);
+  frames.reserve(size_t(std::max(count, 0)));
+  for (int i = 0; i < count; ++i)
+    frames.push_back(count < 2 ? 0 : static_cast<int>(int64_t{i} * (n - 1) / (count - 1)));
+  return frames;
+}
+
+void SkinSummary::AddPerson(double rms_of_person_m, double max_of_person_m, size_t shapes_of_person) {
+  const double n = people++;
+  rms_error_m = std::sqrt((n * std::pow(rms_error_m, 2) + std::pow(rms_of_person_m, 2)) / (n + 1));
+  max_error_m = std::max(max_error_m, max_of_person_m);
+  shapes += static_cast<int>(shapes_of_person);
+}
+
 SkinnedMesh MakeSkinnedMesh(const ExportPerson& person, int num_shapes) {
-  BODYLOOM_CHECK(num_shapes >= 0 && num_shapes <= 64, "skinned mesh: ", num_shapes, " shapes, expected 0 to 64");
+  BODYLOOM_CHECK(num_shapes >= 0 && num_shapes <= kMaxShapes, "skinned mesh: ", num_shapes, " shapes, expected 0 to ",
+                 kMaxShapes);
   const BodyModel& body = *person.body;
   SkinnedMesh mesh;
   SplitSeams(body.data(), &mesh);

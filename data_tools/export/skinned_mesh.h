@@ -13,6 +13,7 @@
 namespace bodyloom {
 
 constexpr int kSkinInfluences = 4;
+constexpr int kMaxShapes = 64;
 
 struct SkinnedMesh {
   MatrixX3d positions;           ///< N×3 T-pose of the shape, body frame; vertices of UV seams are duplicated
@@ -35,5 +36,20 @@ struct SkinnedMesh {
 /// of the correctives over the person's frames (at most 256), their mean added to `positions`; programs are asked to
 /// support 8. Throws std::invalid_argument for other numbers.
 SkinnedMesh MakeSkinnedMesh(const ExportPerson& person, int num_shapes = 8);
+
+/// Up to `maximum` of the frames 0 … n − 1, evenly spread, first and last among them.
+std::vector<int> SpreadFrames(int n, int maximum);
+
+/// The skins of a written file.
+struct SkinSummary {
+  int people = 0;
+  double rms_error_m = 0, max_error_m = 0;  ///< of posed vertices to the bodies' own, of all people
+  int influences = 0;                       ///< joints per vertex at most; 0: all of the body's
+  int reduced_vertices = 0;                 ///< that had more
+  int shapes = 0;                           ///< of all people
+  size_t bytes = 0;                         ///< of the file
+
+  void AddPerson(double rms_of_person_m, double max_of_person_m, size_t shapes_of_person);
+};
 
 }  // namespace bodyloom

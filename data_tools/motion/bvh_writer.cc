@@ -39,9 +39,9 @@ Eigen::Vector3d EulerZxy(const Eigen::Matrix3d& R) {
 
 class Writer {
  public:
-  Writer(const Motion& motion, const BodyModel& model, BvhRig rig)
+  Writer(const Motion& motion, const BodyModel& model, AnimationRig rig)
       : model_(model),
-        skeleton_(BvhSkeletonOf(rig, model)),
+        skeleton_(RigSkeletonOf(rig, model)),
         rest_(model.RestJoints(motion.betas)),
         children_(model.num_joints()) {
     for (int j = 1; j < static_cast<int>(skeleton_.names.size()); ++j) children_[model.parents()[j]].push_back(j);
@@ -52,11 +52,8 @@ class Writer {
   /// Joints in the order of the file.
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
   [[nodiscard]] const std::string& hierarchy() const { return text_; }
-  /// The pose's rotations relative to the rig's rest pose: with A the rest's world rotations, A_p · R · A_jᵀ.
   [[nodiscard]] Eigen::Matrix3d FromRest(const BodyPose& pose, int j) const {
-    const int parent = model_.parents()[j];
-    const Eigen::Matrix3d turned = pose.rotations[j] * skeleton_.rest_rotations[j].transpose();
-    return parent < 0 ? turned : skeleton_.rest_rotations[parent] * turned;
+    return skeleton_.FromRest(model_, pose, j);
   }
 
  private:
@@ -82,7 +79,7 @@ class Writer {
   }
 
   const BodyModel& model_;
-  const BvhSkeleton skeleton_;
+  const RigSkeleton skeleton_;
   MatrixX3d rest_;
   std::vector<std::vector<int>> children_;
   std::vector<int> order_;
@@ -91,7 +88,7 @@ class Writer {
 
 }  // namespace
 
-std::string BvhText(const Motion& motion, const BodyModel& model, BvhRig rig) {
+std::string BvhText(const Motion& motion, const BodyModel& model, AnimationRig rig) {
   CheckMotion(motion, "WriteBvh");
   const double rate = FrameRate(motion);
   BODYLOOM_CHECK(rate > 0 || motion.num_frames() == 1,
@@ -116,57 +113,8 @@ std::string BvhText(const Motion& motion, const BodyModel& model, BvhRig rig) {
   return text;
 }
 
-void WriteBvh(const std::string& path, const Motion& motion, const BodyModel& model, BvhRig rig) {
+void WriteBvh(const std::string& path, const Motion& motion, const BodyModel& model, AnimationRig rig) {
   WriteFileAtomically(path, BvhText(motion, model, rig));
-}
-
-namespace {
-
-constexpr int kRigJoints = 22;
-constexpr double kArmsDown_rad = 45 * M_PI / 180;
-
-}  // namespace
-
-const std::vector<std::string>& BvhRigNames() {
-  static const std::vector<std::string> names = {"smpl", "mixamo", "unreal"};
-  return names;
-}
-
-BvhRig BvhRigFromString(const std::string& name) {
-  const auto found = std::find(BvhRigNames().begin(), BvhRigNames().end(), name);
-  BODYLOOM_CHECK(found != BvhRigNames().end(), "rig '", name, "', expected smpl, mixamo or unreal");
-  return static_cast<BvhRig>(found - BvhRigNames().begin());
-}
-
-BvhSkeleton BvhSkeletonOf(BvhRig rig, const BodyModel& model) {
-  static const std::vector<std::string> mixamo = {
-      "Hips",      "LeftUpLeg", "RightUpLeg",  "Spine",        "LeftLeg",  "RightLeg",     "Spine1",        "LeftFoot",
-      "RightFoot", "Spine2",    "LeftToeBase", "RightToeBase", "Neck",     "LeftShoulder", "RightShoulder", "Head",
-      "LeftArm",   "RightArm",  "LeftForeArm", "RightForeArm", "LeftHand", "RightHand"};
-  static const std::vector<std::string> unreal = {
-      "pelvis",     "thigh_l",    "thigh_r",    "spine_01",   "calf_l",  "calf_r",     "spine_02",   "foot_l",
-      "foot_r",     "spine_03",   "ball_l",     "ball_r",     "neck_01", "clavicle_l", "clavicle_r", "head",
-      "upperarm_l", "upperarm_r", "lowerarm_l", "lowerarm_r", "hand_l",  "hand_r"};
-  BvhSkeleton skeleton;
-  skeleton.rest_rotations.assign(size_t(model.num_joints()), Eigen::Matrix3d::Identity());
-  if (rig == BvhRig::kSmpl) {
-    skeleton.names = model.data().joint_names;
-    return skeleton;
-  }
-  bool smpl = model.num_joints() >= kRigJoints;
-  for (int j = 0; smpl && j < kRigJoints; ++j) smpl = model.parents()[j] == SmplParents()[size_t(j)];
-  BODYLOOM_CHECK(smpl, "BVH: the body '", model.name(),
-                 "' does not begin with SMPL's 22 body joints, which the rig needs");
-  skeleton.names = rig == BvhRig::kMixamo ? mixamo : unreal;
-  if (rig != BvhRig::kUnreal) return skeleton;
-  // The left arm points along +x: down is a turn about −z.
-  const Eigen::Matrix3d left = Eigen::AngleAxisd(-kArmsDown_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  for (int side = 0; side < 2; ++side) {
-    for (const int joint : {16, 18, 20})
-      skeleton.rest_rotations[static_cast<size_t>(joint) + static_cast<size_t>(side)] =
-          side == 0 ? left : left.transpose();
-  }
-  return skeleton;
 }
 
 }  // namespace bodyloom

@@ -8,11 +8,14 @@
 #include <iterator>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/export/c3d_writer.h"
 #include "data_tools/export/camera_writers.h"
 #include "data_tools/export/export_scene.h"
+#include "data_tools/export/fbx_writer.h"
+#include "data_tools/export/glb_writer.h"
 #include "data_tools/export/markers.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
@@ -128,7 +131,9 @@ bool IsFolder(const ExportTrackRequest& request) {
   return (request.form == TrackForm::kObj && request.frame < 0) || request.form == TrackForm::kColmap;
 }
 
-bool TakesPeople(TrackForm form) { return form == TrackForm::kGlb || form == TrackForm::kColmap; }
+bool HasSkins(TrackForm form) { return form == TrackForm::kGlb || form == TrackForm::kFbx; }
+
+bool TakesPeople(TrackForm form) { return HasSkins(form) || form == TrackForm::kColmap; }
 
 bool HasAxes(TrackForm form) {
   return form == TrackForm::kVertices || form == TrackForm::kJoints || form == TrackForm::kObj;
@@ -144,10 +149,10 @@ void CheckExportOptions(const ExportTrackRequest& request) {
   if (request.world_axes && !HasAxes(request.form)) {
     throw RequestError("--axes is of vertices, joints and obj: " + form + " has axes of its own");
   }
-  if (request.rig != BvhRig::kSmpl && request.form != TrackForm::kBvh)
-    throw RequestError("--rig is of bvh, not of " + form);
-  if (!request.textures.empty() && request.form != TrackForm::kGlb) {
-    throw RequestError("--texture is of glb, not of " + form);
+  if (request.rig != AnimationRig::kSmpl && request.form != TrackForm::kBvh && request.form != TrackForm::kFbx)
+    throw RequestError("--rig is of bvh and fbx, not of " + form);
+  if (!request.textures.empty() && !HasSkins(request.form)) {
+    throw RequestError("--texture is of glb and fbx, not of " + form);
   }
   if (request.textures.size() > request.tracks.size()) {
     throw RequestError(Concatenate(request.textures.size(), " textures for ", request.tracks.size(), " tracks"));
@@ -206,13 +211,18 @@ Motion MotionOfEveryFrame(const ExportInputs& inputs, const ExportTrackRequest& 
   return filled;
 }
 
-GlbSummary ExportGlb(const ExportInputs& inputs, const ExportTrackRequest& request) {
+SkinSummary ExportSkins(const ExportInputs& inputs, const ExportTrackRequest& request) {
+  std::vector<std::string> textures;
+  for (const std::string& path : request.textures) {
+    textures.push_back(ReadFileBytes(path));
+    if (!textures.back().starts_with("\x89PNG")) throw std::runtime_error(path + ": not a PNG file");
+  }
+  if (request.form == TrackForm::kFbx) {
+    return WriteFbx(request.out, inputs.Scene(), {request.rig, request.correctives, std::move(textures)});
+  }
   GlbOptions options;
   options.correctives = request.correctives;
-  for (const std::string& path : request.textures) {
-    options.textures.push_back(ReadFileBytes(path));
-    if (!options.textures.back().starts_with("\x89PNG")) throw std::runtime_error(path + ": not a PNG file");
-  }
+  options.textures = std::move(textures);
   return WriteGlb(request.out, inputs.Scene(), options);
 }
 
@@ -232,7 +242,8 @@ void Write(const ExportInputs& inputs, const ExportTrackRequest& request, const 
     case TrackForm::kBvh:
       return WriteBvh(request.out, MotionOfEveryFrame(inputs, request, report), *inputs.body, request.rig);
     case TrackForm::kGlb:
-      report->glb = ExportGlb(inputs, request);
+    case TrackForm::kFbx:
+      report->skin = ExportSkins(inputs, request);
       return;
     case TrackForm::kSmplx:
       return WriteAmassSmplx(request.out, MotionOfEveryFrame(inputs, request, report), pelvis);
@@ -286,8 +297,8 @@ ExportTrackReport ExportChecked(const ExportTrackRequest& request, const BodyMod
 }  // namespace
 
 const std::vector<std::string>& TrackFormNames() {
-  static const std::vector<std::string> names = {"vertices", "joints", "obj", "amass",  "bvh",     "glb",
-                                                 "smplx",    "trc",    "c3d", "colmap", "pose2sim"};
+  static const std::vector<std::string> names = {"vertices", "joints", "obj", "amass", "bvh",    "glb",
+                                                 "fbx",      "smplx",  "trc", "c3d",   "colmap", "pose2sim"};
   return names;
 }
 
@@ -308,11 +319,12 @@ std::string ToText(const ExportTrackReport& report) {
     text += Concatenate("left out ", report.lost_before, " frames before the first and ", report.lost_after,
                         " after the last that show the person\n");
   }
-  if (report.glb.bytes > 0) {
+  if (report.skin.bytes > 0) {
     char line[160];
-    std::snprintf(line, sizeof line,
-                  "skin     %d corrective shapes, four joints a vertex: %.2f mm off (rms), %.2f mm at most\n",
-                  report.glb.shapes, 1e3 * report.glb.rms_error_m, 1e3 * report.glb.max_error_m);
+    std::snprintf(
+        line, sizeof line, "skin     %d corrective shapes, %s joints a vertex: %.2f mm off (rms), %.2f mm at most\n",
+        report.skin.shapes, report.skin.influences > 0 ? std::to_string(report.skin.influences).c_str() : "all",
+        1e3 * report.skin.rms_error_m, 1e3 * report.skin.max_error_m);
     text += line;
   }
   return text + "wrote " + report.out + "\n";

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/export/glb_writer.h"
-#include "data_tools/motion/bvh_writer.h"
+#include "data_tools/export/skinned_mesh.h"
+#include "data_tools/motion/animation_rig.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/track.h"
@@ -23,6 +23,7 @@ enum class TrackForm {
   kAmass,     ///< .npz as AMASS has it: SMPL-H's 156 pose columns, z up
   kBvh,       ///< for animation programs: centimetres
   kGlb,       ///< glTF 2.0 binary: skinned bodies, animation, camera, ground (glb_writer.h); several people
+  kFbx,       ///< binary FBX: skinned bodies, animation, camera (fbx_writer.h); centimetres; several people
   kSmplx,     ///< .npz in AMASS' SMPL-X form, which GMR reads: z up
   kTrc,       ///< markers for OpenSim and Pose2Sim: metres
   kC3d,       ///< markers for biomechanics programs: millimetres
@@ -35,15 +36,15 @@ const std::vector<std::string>& TrackFormNames();
 TrackForm TrackFormFromString(const std::string& name);
 
 struct ExportTrackRequest {
-  std::vector<std::string> tracks;  ///< .npz; more than one: people of one clip, for kGlb and kColmap
+  std::vector<std::string> tracks;  ///< .npz; more than one: people of one clip, for kGlb, kFbx and kColmap
   std::string body;                 ///< the tracks' body; empty: the built-in one
   TrackForm form = TrackForm::kVertices;
-  bool world_axes = false;            ///< kVertices, kJoints, kObj: in the clip's world; false: in the camera frame
-  int frame = -1;                     ///< kObj: only this frame, counted from 0; -1: all
-  BvhRig rig = BvhRig::kSmpl;         ///< kBvh
-  std::vector<std::string> textures;  ///< kGlb: PNG files, by track
-  int correctives = 8;                ///< kGlb: shapes for pose correctives, 0 to 64
-  std::string out;                    ///< file, or folder (kObj of all frames, kColmap)
+  bool world_axes = false;  ///< kVertices, kJoints, kObj: in the clip's world; false: in the camera frame
+  int frame = -1;           ///< kObj: only this frame, counted from 0; -1: all
+  AnimationRig rig = AnimationRig::kSmpl;  ///< kBvh, kFbx
+  std::vector<std::string> textures;       ///< kGlb, kFbx: PNG files, by track
+  int correctives = 8;                     ///< kGlb, kFbx: shapes for pose correctives, 0 to 64
+  std::string out;                         ///< file, or folder (kObj of all frames, kColmap)
 };
 
 struct ExportTrackReport {
@@ -54,7 +55,7 @@ struct ExportTrackReport {
   std::string out;       ///< what was written
   bool uses_world = false;
   WorldFrame world;  ///< where uses_world
-  GlbSummary glb;    ///< kGlb
+  SkinSummary skin;  ///< kGlb, kFbx
   size_t bytes = 0;  ///< of the file, or of the folder's files
   double seconds = 0;
 };

@@ -239,7 +239,7 @@ void WriteClipPage(const ClipPageRequest& request, const PipelineCallbacks& call
   for (const PersonOnPage& person : request.people) content.people.push_back(OnClock(person, moments));
   GlbOptions options;
   options.correctives = request.correctives;
-  GlbSummary exactness;
+  SkinSummary exactness;
   size_t videos = 0;
   const auto update = [&](size_t i) {
     const double share = double(i) / double(moments.size());

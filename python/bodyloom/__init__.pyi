@@ -741,7 +741,7 @@ def export(
     tracks: Track | _Path | Sequence[Track | _Path],
     out: _Path,
     form: Literal[
-        "vertices", "joints", "obj", "amass", "bvh", "glb", "smplx", "trc", "c3d", "colmap", "pose2sim"
+        "vertices", "joints", "obj", "amass", "bvh", "glb", "fbx", "smplx", "trc", "c3d", "colmap", "pose2sim"
     ],
     *,
     body: Body | _Path | None = None,

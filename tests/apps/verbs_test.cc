@@ -233,7 +233,8 @@ TEST_F(Verbs, ExportWritesEveryKind) {
   }
   EXPECT_EQ(LoadMotion(export_to("smplx", "x.npz")).num_frames(), kFrames);
   for (const auto& [what, name, begin] :
-       {std::tuple("glb", "a.glb", "glTF"), std::tuple("trc", "a.trc", "Path"), std::tuple("c3d", "a.c3d", "\x02\x50"),
+       {std::tuple("glb", "a.glb", "glTF"), std::tuple("fbx", "a.fbx", "Kaydara FBX Binary"),
+        std::tuple("trc", "a.trc", "Path"), std::tuple("c3d", "a.c3d", "\x02\x50"),
         std::tuple("pose2sim", "Calib.toml", "[cam_01]"), std::tuple("colmap", "sparse/cameras.txt", "# CAMERA_ID")}) {
     export_to(what, what == std::string("colmap") ? "sparse" : name);
     EXPECT_THAT(Contents(folder_ / name), StartsWith(begin)) << what;

@@ -103,9 +103,10 @@ def main():
         worst = max(worst, 1000 * distance(truth[frame]))
     if picture:
         draw(shown, picture[0])
-    print(f"{path}: at most {worst:.3f} mm off (limit {limit})")
+    print(f"judge: {path}: at most {worst:.3f} mm off (limit {limit})")
     if worst > float(limit):
         sys.exit(1)
 
 
-main()
+if __name__ == "__main__":
+    main()

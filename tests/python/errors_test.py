@@ -103,7 +103,7 @@ class Arguments(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "truth: goes with"):
             bodyloom.Renderer(tracked(), "error")
         with self.assertRaisesRegex(ValueError, "is not a form of a track"):
-            bodyloom.export(tracked(), "/tmp/never", "fbx")
+            bodyloom.export(tracked(), "/tmp/never", "usd")
 
     def test_messages_are_the_command_s(self):
         keypoints, _ = clip()

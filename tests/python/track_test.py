@@ -152,7 +152,7 @@ class Tracks(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             tracked().save(folder / "track.npz")
-            for form, name in (("joints", "j.npy"), ("amass", "a.npz"), ("bvh", "m.bvh"), ("glb", "b.glb"),
+            for form, name in (("joints", "j.npy"), ("amass", "a.npz"), ("bvh", "m.bvh"), ("glb", "b.glb"), ("fbx", "b.fbx"),
                                ("smplx", "x.npz"), ("trc", "t.trc"), ("c3d", "c.c3d"), ("pose2sim", "Calib.toml")):
                 with self.subTest(form=form):
                     run_command("export", "--track", folder / "track.npz", "--what", form, "--out", folder / name)

@@ -77,25 +77,26 @@ TEST(BvhRig, JointsAreWhereTheyAreUnderEveryRigsNames) {
   const ExportPerson& person = scene.people[0];
   const Motion motion = MotionInWorld(TiltedWorld(), person.rest_joints.row(0).transpose(), track.motion);
   const MatrixX3d truth = PoseSkeleton(BuiltinBody(), person.rest_joints, person.poses[7]).joints;
-  const std::map<BvhRig, std::vector<std::string>> wrist_ankle = {{BvhRig::kSmpl, {"l_wrist", "r_ankle", "head"}},
-                                                                  {BvhRig::kMixamo, {"LeftHand", "RightFoot", "Head"}},
-                                                                  {BvhRig::kUnreal, {"hand_l", "foot_r", "head"}}};
+  const std::map<AnimationRig, std::vector<std::string>> wrist_ankle = {
+      {AnimationRig::kSmpl, {"l_wrist", "r_ankle", "head"}},
+      {AnimationRig::kMixamo, {"LeftHand", "RightFoot", "Head"}},
+      {AnimationRig::kUnreal, {"hand_l", "foot_r", "head"}}};
   for (const auto& [rig, names] : wrist_ankle) {
     const std::string text = BvhText(motion, BuiltinBody(), rig);
     const std::map<std::string, Vector3d> at = BvhPositions(text, 7);
-    EXPECT_EQ(at.size(), rig == BvhRig::kSmpl ? 24U : 22U);
+    EXPECT_EQ(at.size(), rig == AnimationRig::kSmpl ? 24U : 22U);
     EXPECT_LT((at.at(names[0]) - truth.row(20).transpose()).norm(), 1e-6);
     EXPECT_LT((at.at(names[1]) - truth.row(8).transpose()).norm(), 1e-6);
     EXPECT_LT((at.at(names[2]) - truth.row(15).transpose()).norm(), 1e-6);
     const std::map<std::string, Vector3d> rest = BvhPositions(text, 7, true);
-    const std::string shoulder = rig == BvhRig::kMixamo   ? "LeftArm"
-                                 : rig == BvhRig::kUnreal ? "upperarm_l"
-                                                          : "l_shoulder";
+    const std::string shoulder = rig == AnimationRig::kMixamo   ? "LeftArm"
+                                 : rig == AnimationRig::kUnreal ? "upperarm_l"
+                                                                : "l_shoulder";
     const Vector3d arm = rest.at(names[0]) - rest.at(shoulder);
-    EXPECT_NEAR(std::atan2(-arm.y(), arm.x()) * 180 / M_PI, rig == BvhRig::kUnreal ? 45 : 0, 3)
+    EXPECT_NEAR(std::atan2(-arm.y(), arm.x()) * 180 / M_PI, rig == AnimationRig::kUnreal ? 45 : 0, 3)
         << "below the horizontal";
   }
-  EXPECT_THROW(BvhRigFromString("rigify"), std::invalid_argument);
+  EXPECT_THROW(AnimationRigFromString("rigify"), std::invalid_argument);
 }
 }  // namespace
 }  // namespace bodyloom::bvh_rig_test

@@ -29,7 +29,7 @@ double Farthest(const GltfTwin& file, const ExportPerson& person, const Track& t
 TEST(GlbWriter, PosesTheBodyWhereItIs) {
   const Track track = TrackWithAGap();
   const ExportScene scene = SceneOf(track);
-  GlbSummary with, without;
+  SkinSummary with, without;
   const GltfTwin file(GlbText(scene, {}, &with)), plain(GlbText(scene, {.correctives = 0}, &without));
   ASSERT_EQ(track.num_frames(), 12);
   for (const auto& [key, t] : {std::pair(0, 0), std::pair(3, 5), std::pair(9, 11)}) {
@@ -47,7 +47,7 @@ TEST(GlbWriter, PosesTheBodyWhereItIs) {
 TEST(GlbWriter, EnoughShapesAreExact) {
   const Track track = TrackWithAGap();
   const ExportScene scene = SceneOf(track);
-  GlbSummary summary;
+  SkinSummary summary;
   const GltfTwin file(GlbText(scene, {.correctives = 10}, &summary));  // as many as there are frames
   EXPECT_LT(summary.max_error_m, 2e-5);
   EXPECT_LT(Farthest(file, scene.people[0], track, 7, 9), 3e-5);
@@ -56,7 +56,7 @@ TEST(GlbWriter, EnoughShapesAreExact) {
 TEST(GlbWriter, KeysAreTheTracksAndSignsDoNotJump) {
   const Track track = TrackWithAGap();
   const ExportScene scene = SceneOf(track);
-  GlbSummary summary;
+  SkinSummary summary;
   const GltfTwin file(GlbText(scene, {}, &summary));
   const int pelvis = file.Node("pelvis"), elbow = file.Node("l_elbow");
   const Eigen::MatrixXd times = file.Keys(pelvis, "translation", false);
@@ -75,7 +75,7 @@ TEST(GlbWriter, KeysAreTheTracksAndSignsDoNotJump) {
 TEST(GlbWriter, CameraSeesWhatTheClipsDid) {
   const Track track = TrackWithAGap();
   const ExportScene scene = SceneOf(track);
-  GlbSummary summary;
+  SkinSummary summary;
   const GltfTwin file(GlbText(scene, {}, &summary));
   const nlohmann::json camera = file.json["cameras"][0]["perspective"];
   const Eigen::Matrix4d view = file.Global(file.Node("camera"), 0).inverse();
@@ -96,7 +96,7 @@ TEST(GlbWriter, CameraSeesWhatTheClipsDid) {
 TEST(GlbWriter, ACameraThatMovesSeesEveryFrame) {
   const Track track = ShortTrack(6, SynthCameraMotion::kWalking);
   const ExportScene scene = SceneOf(track);
-  GlbSummary summary;
+  SkinSummary summary;
   const GltfTwin file(GlbText(scene, {}, &summary));
   const double f =
       0.5 * track.camera.height / std::tan(file.json["cameras"][0]["perspective"]["yfov"].get<double>() / 2);
@@ -124,7 +124,7 @@ TEST(GlbWriter, TwoPeopleShareOneAnimation) {
   for (double& time : second.motion.timestamps) time += 1.5;  // comes later
   const std::array<const BodyModel*, 2> bodies = {&BuiltinBody(), &BuiltinBody()};
   const std::array<const Track*, 2> tracks = {&first, &second};
-  GlbSummary summary;
+  SkinSummary summary;
   const GltfTwin file(GlbText(MakeExportScene(bodies, tracks, TiltedWorld()), {}, &summary));
   EXPECT_EQ(file.json["animations"].size(), 1U);
   EXPECT_EQ(file.json["skins"].size(), 2U);
@@ -135,7 +135,7 @@ TEST(GlbWriter, TwoPeopleShareOneAnimation) {
 
 TEST(GlbWriter, RefusesWhatIsNoImage) {
   const Track track = TrackWithAGap();
-  GlbSummary summary;
+  SkinSummary summary;
   EXPECT_THROW(GlbText(SceneOf(track), {.textures = {"JFIF"}}, &summary), std::invalid_argument);
   EXPECT_THROW(GlbText(SceneOf(track), {.correctives = 65}, &summary), std::invalid_argument);
   const GltfTwin file(GlbText(SceneOf(track), {.textures = {"\x89PNG and so on"}}, &summary));
