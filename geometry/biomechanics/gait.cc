@@ -20,14 +20,14 @@ namespace {
 
 constexpr double kMinSpeed = 0.1, kMaxSpeed = 0.77;  // of √(gL)
 constexpr double kFacing_deg = 60, kMinSwing = 0.15, kMinStep = 0.15;
-constexpr double kStandingSpeed = 0.5, kStandingSpeed_mps = 0.3, kMaxFlightShare = 0.1;
+constexpr double kStandingSpeed = 0.5, kStandingSpeed_mps = 0.3, kMaxFlightShare = 0.2;
 constexpr double kMinStepTime_s = 0.25, kMaxStepTime_s = 1.5;
 constexpr size_t kMinStrikes = 4;
 
 struct Strike {
   Extreme at;
   Foot foot = Foot::kLeft;
-  double step_m = 0;
+  double ahead_m = 0;  ///< of the other ankle
 };
 
 /// A stretch of frames in which the pelvis moves forwards at a walk.
@@ -163,7 +163,7 @@ class GaitAnalysis {
   [[nodiscard]] bool Follows(const Strike& before, const Strike& after) const {
     const double step_s = after.at.seconds - before.at.seconds, min_step_m = kMinStep * places_.leg_length_m;
     return before.foot != after.foot && step_s >= kMinStepTime_s && step_s <= kMaxStepTime_s &&
-           before.step_m >= min_step_m && after.step_m >= min_step_m;
+           before.ahead_m >= min_step_m && after.ahead_m >= min_step_m;
   }
 
   /// Share of the frames in (first, last), which is within a stretch, at which no foot stands.
@@ -212,11 +212,13 @@ class GaitAnalysis {
     report_.num_steps += static_cast<int>(strikes.size()) - 1;
     walked_s_ += end - begin;
     for (size_t i = 1; i < strikes.size(); ++i) {
-      walked_m_ += (MidHip(strikes[i].at.index) - MidHip(strikes[i - 1].at.index)).norm();
-    }
-    for (const Strike& strike : strikes) {
-      length_sum_[size_t(strike.foot)] += strike.step_m;
-      length_count_[size_t(strike.foot)] += 1;
+      const Vector2d way = MidHip(strikes[i].at.index) - MidHip(strikes[i - 1].at.index);
+      walked_m_ += way.norm();
+      const auto side = size_t(strikes[i].foot);
+      const Vector2d step = Horizontal(places_.ankles[side], strikes[i].at.index) -
+                            Horizontal(places_.ankles[1 - side], strikes[i - 1].at.index);
+      length_sum_[side] += step.dot(way.normalized());
+      length_count_[side] += 1;
     }
   }
 

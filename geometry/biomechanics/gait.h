@@ -9,7 +9,7 @@
 /// lengths L. Somebody walks where for four strikes and more
 ///   the pelvis faces d within 60° and moves at 0.1 to 0.77 √(gL) (0.3 to 2.3 m/s for L = 0.9 m),
 ///   left and right strike in turn, 0.25 to 1.5 s apart, each at least 0.15 L ahead of the other foot, and
-///   in nine of ten frames a foot stands: its ankle or ball moves at less than half the pelvis' speed, or 0.3 m/s.
+///   in four of five frames a foot stands: its ankle or ball moves at less than half the pelvis' speed, or 0.3 m/s.
 /// Walking on the spot or on a treadmill does not move the pelvis and is none; so are running, and steps backwards or
 /// to the side. Only frames with a pose count, and nothing is measured across a gap of more than 2.5 frames.
 /// The extremes come about 0.02 s before a foot stands still and after it leaves the ground.
@@ -49,7 +49,7 @@ struct GaitReport {
   int num_steps = 0;                               ///< from one foot's strike to the next one of the other
   double cadence_per_min;                          ///< steps a minute
   double step_time_s;                              ///< mean
-  /// Mean distance of the ankles along d when the left, the right foot strikes; in the track's own scale.
+  /// Of the left, the right foot: mean way from the other ankle's strike to its own strike; in the track's own scale.
   std::array<double, 2> step_length_m;
   double speed_mps;  ///< of the mid-hip, in straight lines from strike to strike
 

@@ -75,8 +75,8 @@ TEST(Gait, EventsAndFiguresOfAWalkAreThoseItWasMadeWith) {
   EXPECT_NEAR(gait.cadence_per_min, 120 / walker.stride_s, 0.5);
   EXPECT_NEAR(gait.step_time_s, 0.5 * walker.stride_s, 0.003);
   EXPECT_NEAR(gait.speed_mps, walker.speed_mps, 0.01);
-  for (const double length : gait.step_length_m) EXPECT_NEAR(length, 0.5 * walker.Stride(), 0.03);
-  EXPECT_NEAR(gait.mean_step_length_m() * gait.cadence_per_min / 60, gait.speed_mps, 0.05);
+  for (const double length : gait.step_length_m) EXPECT_NEAR(length, 0.5 * walker.Stride(), 0.02);
+  EXPECT_NEAR(gait.mean_step_length_m() * gait.cadence_per_min / 60, gait.speed_mps, 0.02);
   EXPECT_GE(gait.num_steps, 7);
   ASSERT_EQ(gait.bouts_s.size(), 1U);
   int strikes = 0, offs = 0;
@@ -133,7 +133,7 @@ TEST(Gait, WhoDoesNotWalkHasNoStepsAndAReason) {
   treadmill.on_the_spot = true;
   EXPECT_THAT(reason(treadmill.Places()), HasSubstr("does not move as fast"));
   Walker runner;
-  runner.stance = 0.35;
+  runner.stance = 0.25;
   runner.stride_s = 0.8;
   runner.speed_mps = 2;
   EXPECT_THAT(reason(runner.Places()), HasSubstr("running"));
