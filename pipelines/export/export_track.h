@@ -2,12 +2,14 @@
 /// Exports tracks to formats of animation programs, game engines, biomechanics and reconstruction, and to plain arrays.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "data_tools/export/glb_writer.h"
 #include "data_tools/motion/bvh_writer.h"
 #include "geometry/base/callbacks.h"
+#include "geometry/biomechanics/gait.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/track.h"
 #include "geometry/scene/world_frame.h"
@@ -28,6 +30,7 @@ enum class TrackForm {
   kC3d,       ///< markers for biomechanics programs: millimetres
   kColmap,    ///< a folder: the camera as a COLMAP text model
   kPose2Sim,  ///< Calib.toml: the camera, z up
+  kAngles,    ///< .csv, or .mot for OpenSim: joint angles (geometry/biomechanics/joint_angles.h), degrees
 };
 /// "vertices", "joints", ... in the order of TrackForm.
 const std::vector<std::string>& TrackFormNames();
@@ -43,6 +46,7 @@ struct ExportTrackRequest {
   BvhRig rig = BvhRig::kSmpl;         ///< kBvh
   std::vector<std::string> textures;  ///< kGlb: PNG files, by track
   int correctives = 8;                ///< kGlb: shapes for pose correctives, 0 to 64
+  std::string events;                 ///< kAngles: also the events of gait, .json; empty: not
   std::string out;                    ///< file, or folder (kObj of all frames, kColmap)
 };
 
@@ -52,9 +56,10 @@ struct ExportTrackReport {
   int lost_after = 0;   ///< and after the last
   std::string out;      ///< what was written
   bool uses_world = false;
-  WorldFrame world;  ///< where uses_world
-  GlbSummary glb;    ///< kGlb
-  size_t bytes = 0;  ///< of the file, or of the folder's files
+  WorldFrame world;                ///< where uses_world
+  GlbSummary glb;                  ///< kGlb
+  std::optional<GaitReport> gait;  ///< kAngles
+  size_t bytes = 0;                ///< of the file, or of the folder's files
   double seconds = 0;
 };
 
