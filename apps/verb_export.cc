@@ -29,6 +29,7 @@ constexpr const char* kExportFooter =
     "  trc, c3d   22 markers of HALPE_26 for OpenSim, Pose2Sim and others: metres, millimetres\n"
     "  colmap     a folder with the camera as a COLMAP text model; several --track\n"
     "  pose2sim   the camera as Calib.toml, z up\n"
+    "  angles     joint angles by OpenSim's names, degrees, and whether and how the person walks: .csv, or .mot\n"
     "What is written of --cameras, in the frame of its poses (of rig.json the first camera's), metres:\n"
     "  rig-toml    Pose2Sim's Calib.toml\n"
     "  rig-opencv  YAML of OpenCV's FileStorage: a list of cameras\n"
@@ -52,7 +53,8 @@ bool IsRigForm(const std::string& form) {
 
 /// Options of the verb that are of tracks, or of their forms.
 void RefuseOptionsOfTracks(const CLI::App& verb, const std::string& form) {
-  for (const char* option : {"--track", "--body", "--frame", "--axes", "--rig", "--texture", "--correctives"}) {
+  for (const char* option :
+       {"--track", "--body", "--frame", "--axes", "--rig", "--texture", "--correctives", "--events"}) {
     if (verb.count(option) > 0) throw RequestError("--what " + form + " writes cameras: leave out " + option);
   }
 }
@@ -61,7 +63,7 @@ void RefuseOptionsOfTracks(const CLI::App& verb, const std::string& form) {
 
 void AddExportVerb(CLI::App& app, Action* action) {
   CLI::App* verb = app.add_subcommand(
-      "export", "Writes tracks or cameras in another form: glTF, FBX, BVH, AMASS, TRC, C3D, COLMAP, arrays");
+      "export", "Writes tracks or cameras in another form: glTF, FBX, BVH, AMASS, TRC, C3D, angles, COLMAP, arrays");
   verb->footer(std::string(kExportFooter) + kExitCodeHelp);
   auto request = std::make_shared<ExportTrackRequest>();
   auto form = std::make_shared<std::string>();
@@ -89,6 +91,7 @@ void AddExportVerb(CLI::App& app, Action* action) {
   verb->add_option("--correctives", c.correctives, "glb, fbx: shapes that hold the pose correctives")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
+  verb->add_option("--events", c.events, "angles: also the steps, as .json")->type_name("FILE");
   verb->callback([=] {
     *action = [=] {
       if (IsRigForm(*form)) {

@@ -42,13 +42,14 @@ constexpr const char* kExportDoc = R"(Writes a track for another program, whole 
 tracks      a Track or a file; a list of them, people of one clip, for "glb", "fbx" and "colmap"
 out         the file, or for "obj" of all frames and "colmap" the folder
 form        "vertices", "joints" (.npy), "obj", "amass", "bvh", "glb", "fbx", "smplx", "trc", "c3d", "colmap",
-            "pose2sim"
+            "pose2sim", "angles"
 body        Body that the tracks are of, or a file; None: the first track's own
 world_axes  of vertices, joints and obj: the clip's world (y up, ground at y = 0) instead of the camera frame
 frame       of obj: only this frame
 rig         of bvh, fbx: names and rest pose: "smpl", "mixamo", "unreal", "vrm"
 textures    of glb, fbx: PNG files, one a track
 correctives of glb, fbx: shapes for pose correctives, 0 to 64
+events      of angles: a .json for the events of gait; None: not written
 docs/exports.md says what each form holds. Returns a few lines of text on what was written. Raises ValueError for
 arguments that do not go together, RuntimeError naming a file that cannot be used or a frame that is lost.)";
 
@@ -115,7 +116,7 @@ Evaluation EvaluateFromPython(const TrackArgument& track_argument, const std::op
 std::string ExportFromPython(const std::variant<TrackArgument, std::vector<TrackArgument>>& tracks, const Path& out,
                              const std::string& form, const std::optional<BodyArgument>& body, bool world_axes,
                              std::optional<int> frame, const std::string& rig, const std::vector<Path>& textures,
-                             int correctives, const py::object& progress) {
+                             int correctives, const std::optional<Path>& events, const py::object& progress) {
   std::vector<std::shared_ptr<TrackObject>> each;
   if (const auto* one = std::get_if<TrackArgument>(&tracks)) {
     each.push_back(TrackFrom(*one));
@@ -136,6 +137,7 @@ std::string ExportFromPython(const std::variant<TrackArgument, std::vector<Track
   request.rig = AnimationRigFromString(rig);
   for (const Path& texture : textures) request.textures.push_back(texture.string());
   request.correctives = correctives;
+  request.events = TextOf(events);
   request.out = out.string();
   const std::shared_ptr<const BodyModel> body_model = BodyOf(*each.front(), body);
   return PythonCallbacks(progress).Run([&](const PipelineCallbacks& callbacks) {
@@ -166,7 +168,8 @@ void BindResults(py::module_& module) {
   module.def("export", &ExportFromPython, py::arg("tracks"), py::arg("out"), py::arg("form"), py::kw_only(),
              py::arg("body") = py::none(), py::arg("world_axes") = false, py::arg("frame") = py::none(),
              py::arg("rig") = AnimationRigNames()[size_t(defaults.rig)], py::arg("textures") = std::vector<Path>(),
-             py::arg("correctives") = defaults.correctives, py::arg("progress") = py::none(), kExportDoc);
+             py::arg("correctives") = defaults.correctives, py::arg("events") = py::none(),
+             py::arg("progress") = py::none(), kExportDoc);
 }
 
 }  // namespace bodyloom::python

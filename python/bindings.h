@@ -23,6 +23,7 @@ void BindRendering(pybind11::module_& module);
 void BindPerson(pybind11::module_& module);
 void BindAvatar(pybind11::module_& module);
 void BindResults(pybind11::module_& module);
+void BindGait(pybind11::module_& module);
 
 /// Name of a convention (data_tools/observations/keypoint_conventions.h), or a list of landmarks.
 using LandmarkNames = std::variant<std::string, std::vector<std::string>>;

@@ -24,4 +24,5 @@ PYBIND11_MODULE(_bodyloom, module) {
   BindPerson(module);
   BindAvatar(module);
   BindResults(module);
+  BindGait(module);
 }

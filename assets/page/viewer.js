@@ -3,7 +3,8 @@
 // `./dev page` bundles it with three and uPlot into viewer.bundle.js, which the program carries.
 //
 // The page holds, by id of its <script> elements:
-//   clip   JSON: seconds (one a frame, from the clip's start), people [{name, joints, status, residual_px, sigma_mm}],
+//   clip   JSON: seconds (one a frame, from the clip's start), people [{name, joints, status, residual_px, sigma_mm,
+//          angles {names, tenths_deg: one a frame of each}}],
 //          world_from_camera (3x4, rows), K (3x3), image_size, fps, and of a camera that moves cameras: such rows a frame,
 //          and of further cameras, which stand still, views [{world_from_camera, K, image_size}]
 //   glb    the scene as base64 of a .glb
@@ -295,6 +296,98 @@ class Timeline {
   }
 }
 
+// A small plot for each joint angle, both sides in one. The curves are drawn once; a line in front follows the frame.
+class AnglePlots {
+  constructor(holder, jump) {
+    this.holder = holder;
+    this.frame = 0;
+    this.plots = holder.querySelector('.plots');
+    this.people = clip.people.filter((person) => person.angles);
+    if (this.people.length === 0) { holder.style.display = 'none'; return; }
+    const choice = element('angles-of');
+    choice.replaceChildren(...this.people.map((person, index) => new Option(person.name, index)));
+    choice.style.display = this.people.length > 1 ? '' : 'none';
+    choice.addEventListener('change', () => this.choose(this.people[choice.value]));
+    choice.addEventListener('click', (event) => event.preventDefault()); // does not fold the summary around it
+    this.plots.addEventListener('click', (event) => {
+      const figure = event.target.closest('figure');
+      if (!figure) return;
+      const box = figure.getBoundingClientRect();
+      const start = clip.seconds[0], end = clip.seconds[frames - 1];
+      jump(frameAt(start + (event.clientX - box.left) / box.width * (end - start)));
+    });
+    this.choose(this.people[0]);
+    new ResizeObserver(() => this.draw()).observe(this.plots);
+  }
+
+  choose(person) {
+    this.person = person;
+    const { names, tenths_deg: tenths } = person.angles;
+    const curve = (name) => tenths[names.indexOf(name)].map((v) => (v === null ? null : v / 10));
+    this.figures = [...new Set(names.map((name) => name.replace(/_[rl]$/, '')))].map((name) => {
+      const curves = names.includes(name) ? [['#4a5568', curve(name)]] : [['#b7472a', curve(`${name}_r`)], ['#2b6cb0', curve(`${name}_l`)]];
+      const figure = document.createElement('figure');
+      figure.innerHTML = '<figcaption></figcaption><canvas></canvas><i></i>';
+      const [caption, canvas, line] = figure.children;
+      return { name: name.replaceAll('_', ' '), curves, figure, caption, canvas, line };
+    });
+    this.plots.replaceChildren(...this.figures.map(({ figure }) => figure));
+    this.draw();
+  }
+
+  draw() {
+    const scale = window.devicePixelRatio || 1;
+    const start = clip.seconds[0], length = (clip.seconds[frames - 1] - start) || 1;
+    for (const shown of this.figures || []) {
+      const { curves, canvas } = shown;
+      const width = canvas.clientWidth, height = canvas.clientHeight;
+      if (width === 0) continue;
+      shown.width = width; // asked for here alone: the answer costs a layout
+      canvas.width = width * scale;
+      canvas.height = height * scale;
+      const values = curves.flatMap(([, degrees]) => degrees.filter((v) => v !== null));
+      const middle = values.length ? (Math.max(...values) + Math.min(...values)) / 2 : 0;
+      const half = Math.max(15, ...values.map((v) => Math.abs(v - middle))) * 1.08; // a joint at rest is a flat line
+      const y = (v) => height * (0.5 - 0.5 * (v - middle) / half);
+      const context = canvas.getContext('2d');
+      context.scale(scale, scale);
+      context.fillStyle = '#fff';
+      context.fillRect(0, 0, width, height);
+      const step = [10, 20, 45, 90, 180, 360, 720].find((s) => half / s < 2.2) || 1440;
+      context.font = '10px system-ui, sans-serif';
+      for (let v = Math.ceil((middle - half) / step) * step; v <= middle + half; v += step) {
+        context.fillStyle = v === 0 ? '#a0aec0' : '#e2e8f0';
+        context.fillRect(0, Math.round(y(v)), width, 1);
+        context.fillStyle = '#718096';
+        if (y(v) > 10) context.fillText(`${v}`, 2, y(v) - 2);
+      }
+      for (const [colour, degrees] of curves) {
+        context.strokeStyle = colour;
+        context.beginPath();
+        let pen = false;
+        degrees.forEach((v, frame) => {
+          if (v === null) { pen = false; return; }
+          const x = (clip.seconds[frame] - start) / length * width;
+          if (pen) context.lineTo(x, y(v)); else context.moveTo(x, y(v));
+          pen = true;
+        });
+        context.stroke();
+      }
+    }
+    this.show(this.frame);
+  }
+
+  show(frame) {
+    this.frame = frame;
+    if (!this.figures || !this.holder.open) return;
+    const start = clip.seconds[0], length = (clip.seconds[frames - 1] - start) || 1;
+    for (const { name, curves, width, caption, line } of this.figures) {
+      line.style.transform = `translateX(${(clip.seconds[frame] - start) / length * ((width || 1) - 1)}px)`;
+      caption.textContent = `${name} ${curves.map(([, degrees]) => (degrees[frame] === null ? '–' : `${Math.round(degrees[frame])}°`)).join(', ')}`;
+    }
+  }
+}
+
 async function main() {
   const stage = new Stage(element('stage'));
   await stage.load();
@@ -310,6 +403,7 @@ async function main() {
     current = frame;
     stage.show(frame);
     timeline.show(frame);
+    anglePlots.show(frame);
     element('slider').value = frame;
     const words = clip.people.map((person) => {
       const px = person.residual_px[frame];
@@ -320,6 +414,7 @@ async function main() {
     if (moveVideo) for (const { player } of videos) player.currentTime = (frame + 0.5) / clip.fps;
   }
   const timeline = new Timeline(element('timeline'), (frame) => show(frame, true));
+  const anglePlots = new AnglePlots(element('angles'), (frame) => show(frame, true));
 
   for (const { player, bytes } of videos) {
     player.src = URL.createObjectURL(new Blob([bytesOf(bytes)], { type: 'video/mp4' }));

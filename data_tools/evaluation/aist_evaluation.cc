@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "data_tools/evaluation/joint_angle_errors.h"
 #include "data_tools/evaluation/metrics.h"
 #include "data_tools/evaluation/vertex_errors.h"
 #include "data_tools/formats/pickle.h"
@@ -41,6 +42,8 @@ void AddPublishedMotion(const Track& track, const MultiViewClip& clip, const std
   if (!smpl) {
     result->Add("pve_mm", errors.position.mean * kMmPerMetre, "vertex error, pelvis aligned");
   }
+  AddCoordinateErrors(track, source, truth.track, body,
+                      WorldOverGround(own->pose.camera_from_world_rotation * clip.up_in_world, 0), result);
   result->Add("truth_landmark_err_mm", truth.landmark_error_m * kMmPerMetre,
               "distance of the published motion's own landmarks to keypoints3d_optim");
   result->description +=

@@ -21,7 +21,7 @@ MultiViewClip ReadAistClip(const std::string& annotations_folder, const std::str
 /// Protocol "aist-held-out": EvaluateHeldOutViews on that clip. `view` is the camera the track was fitted to ("c01").
 /// With the body that the track was made with, also the per-vertex projection error of paper A, Table 4, against the
 /// recording's own SMPL motion on that body (as published on a body of SMPL's 6,890 vertices, fitted to the 3D joints
-/// on any other).
+/// on any other), and the errors of OpenSim's coordinates (data_tools/evaluation/joint_angle_errors.h).
 Evaluation EvaluateAist(const Track& track, const MultiViewClip& clip, const std::string& view,
                         const BodyModel* body = nullptr);
 Evaluation EvaluateAist(const Track& track, const std::string& annotations_folder, const std::string& cameras_folder,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/joint_angle_errors.h"
 #include "data_tools/evaluation/metrics.h"
 #include "data_tools/evaluation/metrics_image.h"
 #include "data_tools/evaluation/room_errors.h"
@@ -188,6 +189,7 @@ Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, c
   result.breakdowns.push_back(std::move(by_view));
   AddBreakdown("pa_mpjpe_mm", CocoNames(), pa.per_point * kMm, &result);
   AddBreakdown("mpjpe_scaled_mm", CocoNames(), scaled.per_point * kMm, &result);
+  AddLandmarkAngleErrors(P, G, &result);
   return result;
 }
 

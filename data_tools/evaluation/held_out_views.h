@@ -49,7 +49,8 @@ struct EvaluateHeldOutViewsOptions {
 ///   fitview_own_*      the same through the track's own camera (differs when the focal length was estimated)
 /// and PCK, percent of person height (data_tools/evaluation/metrics_image.h); where the vertical is known and the track
 /// states a world, the errors in the room (data_tools/evaluation/room_errors.h); with `motion`, the angle between the
-/// track's joint rotations and SMPL's, both on the same 24 joints, the root's in the camera frame. A frame whose
+/// track's joint rotations and SMPL's, both on the same 24 joints, the root's in the camera frame; and the errors of
+/// angles between landmarks (data_tools/evaluation/joint_angle_errors.h). A frame whose
 /// landmarks are not all finite is scored with the nearest frame that has them. Throws std::invalid_argument when the
 /// view is unknown, sizes disagree, or nothing overlaps.
 Evaluation EvaluateHeldOutViews(const Track& track, const MultiViewClip& clip, const std::string& view,

@@ -11,6 +11,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/percentile.h"
 #include "geometry/base/units.h"
+#include "geometry/biomechanics/landmark_angles.h"
 #include "geometry/math/procrustes.h"
 #include "geometry/math/rotation.h"
 #include "tracking/initialise/ground_plane.h"
@@ -63,8 +64,7 @@ double AngleDeg(const Vector3d& a, const Vector3d& b) {
 }
 
 double KneeFlexionDeg(const MatrixX3d& points, int side) {
-  const Vector3d knee = points.row(13 + side);
-  return 180 - AngleDeg(points.row(11 + side).transpose() - knee, points.row(15 + side).transpose() - knee);
+  return FlexionDeg(points.row(11 + side), points.row(13 + side), points.row(15 + side));
 }
 
 double LowerAnkle(const MatrixX3d& points) { return std::min(points(15, 1), points(16, 1)); }

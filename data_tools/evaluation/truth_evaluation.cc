@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/joint_angle_errors.h"
 #include "data_tools/evaluation/metrics.h"
 #include "data_tools/evaluation/sigma_reliability.h"
 #include "data_tools/evaluation/vertex_errors.h"
@@ -123,6 +124,7 @@ Evaluation EvaluateAgainstTruth(const Track& track, const Track& truth, const Bo
   };
   breakdown("mpjpe_mm", mpjpe.per_point, kMmPerMetre);
   breakdown("joint_angle_err_deg", angles.per_joint_deg, 1);
+  AddCoordinateErrors(track, source, truth, body, truth.world.value_or(track.world.value_or(WorldFrame())), &result);
   return result;
 }
 

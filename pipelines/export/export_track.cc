@@ -27,6 +27,7 @@
 #include "geometry/base/stopwatch.h"
 #include "geometry/scene/track.h"
 #include "geometry/scene/track_edits.h"
+#include "pipelines/export/export_angles.h"
 #include "pipelines/files.h"
 #include "render/view/floor.h"
 #include "render/view/follow_view.h"
@@ -157,12 +158,17 @@ void CheckExportOptions(const ExportTrackRequest& request) {
   if (request.textures.size() > request.tracks.size()) {
     throw RequestError(Concatenate(request.textures.size(), " textures for ", request.tracks.size(), " tracks"));
   }
+  const bool angles = request.form == TrackForm::kAngles;
+  if (!request.events.empty() && !angles) throw RequestError("--events is of angles, not of " + form);
+  if (angles && !AnglesPathFault(request.out).empty()) throw RequestError(AnglesPathFault(request.out));
 }
 
 /// Files beside the tracks and the body.
 void CheckOtherFilesOf(const ExportTrackRequest& request) {
   for (const std::string& texture : request.textures) RequireReadable(texture, "texture");
   RequireDistinct(request.textures, {request.out});
+  RequireDistinct({}, {request.out, request.events});
+  RequireWritable(request.events);
   if (IsFolder(request)) {
     RequireWritableFolder(request.out);
   } else {
@@ -262,6 +268,9 @@ void Write(const ExportInputs& inputs, const ExportTrackRequest& request, const 
                                  "expected --what colmap");
       }
       return WritePose2SimCalibration(request.out, "cam_01", track.camera, inputs.world);
+    case TrackForm::kAngles:
+      report->gait = ExportAngles(*inputs.body, track, inputs.world, request.out, request.events);
+      return;
   }
 }
 
@@ -297,8 +306,8 @@ ExportTrackReport ExportChecked(const ExportTrackRequest& request, const BodyMod
 }  // namespace
 
 const std::vector<std::string>& TrackFormNames() {
-  static const std::vector<std::string> names = {"vertices", "joints", "obj", "amass", "bvh",    "glb",
-                                                 "fbx",      "smplx",  "trc", "c3d",   "colmap", "pose2sim"};
+  static const std::vector<std::string> names = {"vertices", "joints", "obj", "amass",  "bvh",      "glb",   "fbx",
+                                                 "smplx",    "trc",    "c3d", "colmap", "pose2sim", "angles"};
   return names;
 }
 
@@ -327,6 +336,7 @@ std::string ToText(const ExportTrackReport& report) {
         1e3 * report.skin.rms_error_m, 1e3 * report.skin.max_error_m);
     text += line;
   }
+  if (report.gait) text += "gait     " + report.gait->BriefReport() + "\n";
   return text + "wrote " + report.out + "\n";
 }
 
@@ -334,8 +344,8 @@ ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineC
   CheckExportOptions(request);
   for (const std::string& track : request.tracks) RequireReadable(track, "track");
   RequireReadable(request.body, "body model");
-  RequireDistinct(request.tracks, {request.out});
-  RequireDistinct({request.body}, {request.out});
+  RequireDistinct(request.tracks, {request.out, request.events});
+  RequireDistinct({request.body}, {request.out, request.events});
   CheckOtherFilesOf(request);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   std::vector<Track> tracks;

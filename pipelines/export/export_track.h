@@ -2,12 +2,14 @@
 /// Exports tracks to formats of animation programs, game engines, biomechanics and reconstruction, and to plain arrays.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "data_tools/export/skinned_mesh.h"
 #include "data_tools/motion/animation_rig.h"
 #include "geometry/base/callbacks.h"
+#include "geometry/biomechanics/gait.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/track.h"
 #include "geometry/scene/world_frame.h"
@@ -29,6 +31,7 @@ enum class TrackForm {
   kC3d,       ///< markers for biomechanics programs: millimetres
   kColmap,    ///< a folder: the camera as a COLMAP text model
   kPose2Sim,  ///< Calib.toml: the camera, z up
+  kAngles,    ///< .csv, or .mot for OpenSim: joint angles (geometry/biomechanics/joint_angles.h), degrees
 };
 /// "vertices", "joints", ... in the order of TrackForm.
 const std::vector<std::string>& TrackFormNames();
@@ -44,6 +47,7 @@ struct ExportTrackRequest {
   AnimationRig rig = AnimationRig::kSmpl;  ///< kBvh, kFbx
   std::vector<std::string> textures;       ///< kGlb, kFbx: PNG files, by track
   int correctives = 8;                     ///< kGlb, kFbx: shapes for pose correctives, 0 to 64
+  std::string events;                      ///< kAngles: also the events of gait, .json; empty: not
   std::string out;                         ///< file, or folder (kObj of all frames, kColmap)
 };
 
@@ -54,9 +58,10 @@ struct ExportTrackReport {
   int lost_between = 0;  ///< kAmass, kBvh, kSmplx: frames between the two that were interpolated
   std::string out;       ///< what was written
   bool uses_world = false;
-  WorldFrame world;  ///< where uses_world
-  SkinSummary skin;  ///< kGlb, kFbx
-  size_t bytes = 0;  ///< of the file, or of the folder's files
+  WorldFrame world;                ///< where uses_world
+  SkinSummary skin;                ///< kGlb, kFbx
+  std::optional<GaitReport> gait;  ///< kAngles
+  size_t bytes = 0;                ///< of the file, or of the folder's files
   double seconds = 0;
 };
 

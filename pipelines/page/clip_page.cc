@@ -27,6 +27,10 @@ main { max-width: 1280px; }
 .controls input[type=range] { flex: 1; min-width: 200px; }
 button { font: inherit; padding: 3px 12px; border: 1px solid #cbd5e0; border-radius: 6px; background: #fff; cursor: pointer; }
 .scale { display: inline-block; width: 120px; height: 10px; border-radius: 5px; }
+#angles summary { cursor: pointer; } #angles .right { color: #b7472a; } #angles .left { color: #2b6cb0; }
+#angles .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(190px, 1fr)); gap: 6px 10px; margin: 8px 0; }
+#angles figure { position: relative; margin: 0; cursor: pointer; } #angles canvas { display: block; width: 100%; height: 72px; border-radius: 4px; }
+#angles figcaption { font-size: 12px; white-space: nowrap; overflow: hidden; } #angles i { position: absolute; bottom: 0; left: 0; width: 1px; height: 72px; background: #111; }
 #place { color: #4a5568; font-size: 14px; min-height: 1.5em; }
 .u-wrap { position: relative; user-select: none; } .u-over, .u-under { position: absolute; }
 .uplot, .uplot *, .uplot *::before, .uplot *::after { box-sizing: border-box; }
@@ -61,6 +65,8 @@ constexpr const char* kShownHtml = R"(<label><input id="show-body" type="checkbo
 <div id="timeline"></div>
 <p>A click in the timeline goes there; so do the arrow keys, frame by frame. Shaded: weak (yellow), interpolated (orange) and lost (red)
 frames, a band a person.</p>
+<details id="angles" open><summary>Joint angles, degrees: <span class="right">right</span>, <span class="left">left</span>
+<select id="angles-of" aria-label="person"></select></summary><div class="plots"></div></details>
 )";
 
 PageJson OrNull(double value, double scale, double digits) {
@@ -79,6 +85,13 @@ PageJson PersonJson(const ClipPagePerson& person) {
       }
     }
     json["sigma_mm"].push_back(std::move(row));
+  }
+  if (!person.angle_names.empty()) json["angles"]["names"] = person.angle_names;
+  for (size_t a = 0; a < person.angle_names.size(); ++a) {
+    PageJson& curve = json["angles"]["tenths_deg"].emplace_back();
+    for (const double degrees : person.angles_deg.col(Eigen::Index(a))) {
+      curve.push_back(std::isfinite(degrees) ? PageJson(std::lround(10 * degrees)) : PageJson());
+    }
   }
   return json;
 }
@@ -189,6 +202,10 @@ void CheckContent(const ClipPageContent& content) {
         "a clip's page: ", person.name, " has ", person.status.size(), " statuses, ", person.residual_px.size(),
         " residuals and ", person.joint_sigma_m.rows(), "x", person.joint_sigma_m.cols(), " sigmas, expected ", n,
         " frames and ", person.joint_names.size(), " joints");
+    BODYLOOM_CHECK(person.angle_names.empty() || (person.angles_deg.rows() == Eigen::Index(n) &&
+                                                  person.angles_deg.cols() == Eigen::Index(person.angle_names.size())),
+                   "a clip's page: ", person.name, " has ", person.angles_deg.rows(), "x", person.angles_deg.cols(),
+                   " angles, expected ", n, " frames and ", person.angle_names.size(), " names");
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Writes a tracked clip as one self-contained HTML file that opens from disk: the video beside an interactive view of
-/// the bodies in their world, a timeline of residuals, statuses and uncertainty, text, and files to download. Scene,
-/// video and script (assets/page/viewer.js) are embedded in the page.
+/// the bodies in their world, a timeline of residuals, statuses and uncertainty, plots of joint angles, text, and files
+/// to download. Scene, video and script (assets/page/viewer.js) are embedded in the page.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,12 @@ struct ClipPagePerson {
   std::vector<FrameStatus> status;       ///< kLost also where the track has no frame
   std::vector<double> residual_px;       ///< NaN where unknown
   RowMatrixXd joint_sigma_m;             ///< N×J; NaN likewise
-  std::vector<PlanEntry> plan;           ///< steps that ran or were skipped, with reasons
-  std::vector<TermCost> costs;           ///< cost of each term at the solution
+  /// Plots of joint angles: names (OpenSim's; those that end in _r and _l share a plot) and N×A degrees, NaN likewise;
+  /// none: no plots.
+  std::vector<std::string> angle_names;
+  RowMatrixXd angles_deg;
+  std::vector<PlanEntry> plan;  ///< steps that ran or were skipped, with reasons
+  std::vector<TermCost> costs;  ///< cost of each term at the solution
   std::optional<WorstStretch> worst_stretch;
 };
 

@@ -2,6 +2,7 @@
 #include "pipelines/page/write_clip_page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_encoder.h"
 #include "geometry/base/check.h"
+#include "geometry/biomechanics/track_angles.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/page/clip_page.h"
@@ -64,8 +66,32 @@ ExportScene SceneOf(const std::vector<PersonOnPage>& people, const WorldFrame& w
   return scene;
 }
 
+/// Angles that the page plots, those of the sides without "_r" and "_l".
+constexpr std::array<const char*, 6> kPlottedMiddle = {"pelvis_tilt",      "pelvis_list",    "pelvis_rotation",
+                                                       "lumbar_extension", "lumbar_bending", "lumbar_rotation"};
+constexpr std::array<const char*, 8> kPlottedSides = {"hip_flexion", "hip_adduction", "hip_rotation", "knee_angle",
+                                                      "ankle_angle", "arm_flex",      "arm_add",      "elbow_flex"};
+
+/// Lays the plotted angles on the page's clock; none for a body without the joints.
+void AddAngles(const PersonOnPage& person, const WorldFrame& world, const std::vector<double>& moments,
+               ClipPagePerson* on_page) {
+  if (!HasJointAngles(*person.body)) return;
+  for (const char* name : kPlottedSides) {
+    for (const char* side : {"_r", "_l"}) on_page->angle_names.push_back(std::string(name) + side);
+  }
+  on_page->angle_names.insert(on_page->angle_names.end(), kPlottedMiddle.begin(), kPlottedMiddle.end());
+  const TrackAngles angles = AnglesOfTrack(*person.body, *person.track, world);
+  on_page->angles_deg.setConstant(Eigen::Index(moments.size()), Eigen::Index(on_page->angle_names.size()), kNaN);
+  for (int t = 0; t < person.track->num_frames(); ++t) {
+    const auto row = std::lower_bound(moments.begin(), moments.end(), angles.timestamps[size_t(t)]) - moments.begin();
+    for (size_t a = 0; a < on_page->angle_names.size(); ++a) {
+      on_page->angles_deg(row, Eigen::Index(a)) = angles.values(t, FindCoordinate(on_page->angle_names[a]));
+    }
+  }
+}
+
 /// The person's frames laid on the page's clock.
-ClipPagePerson OnClock(const PersonOnPage& person, const std::vector<double>& moments) {
+ClipPagePerson OnClock(const PersonOnPage& person, const WorldFrame& world, const std::vector<double>& moments) {
   const Track& track = *person.track;
   const size_t n = moments.size();
   const std::vector<std::string>& names = person.body->data().joint_names;
@@ -91,6 +117,7 @@ ClipPagePerson OnClock(const PersonOnPage& person, const std::vector<double>& mo
     on_page.costs = person.summary->costs;
     on_page.worst_stretch = person.summary->worst_stretch;
   }
+  AddAngles(person, world, moments, &on_page);
   return on_page;
 }
 
@@ -236,7 +263,9 @@ void WriteClipPage(const ClipPageRequest& request, const PipelineCallbacks& call
   for (const double second : content.seconds) {
     if (!scene.camera_keys.empty()) content.world_from_cameras.push_back(Inverse(scene.CameraAt(second)));
   }
-  for (const PersonOnPage& person : request.people) content.people.push_back(OnClock(person, moments));
+  for (const PersonOnPage& person : request.people) {
+    content.people.push_back(OnClock(person, content.world, moments));
+  }
   GlbOptions options;
   options.correctives = request.correctives;
   SkinSummary exactness;

@@ -16,6 +16,7 @@ __all__ = [
     "Cancelled",
     "DescriptorFrames",
     "Evaluation",
+    "JointAngles",
     "Keypoints",
     "LiveDescriptors",
     "LiveFrame",
@@ -31,6 +32,8 @@ __all__ = [
     "detect",
     "evaluate",
     "export",
+    "gait",
+    "joint_angles",
     "parse_photo",
     "read_rig",
     "render",
@@ -505,6 +508,17 @@ class Evaluation:
     def breakdowns(self) -> dict[str, dict[str, float]]: ...
     def __getitem__(self, name: str) -> float: ...
 
+class JointAngles:
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def timestamps(self) -> _Doubles: ...
+    @property
+    def values(self) -> _Doubles: ...
+    @property
+    def sigma_deg(self) -> _Doubles: ...
+    def __getitem__(self, name: str) -> _Doubles: ...
+
 def track(
     keypoints: Keypoints | _Path | None = None,
     *,
@@ -741,7 +755,7 @@ def export(
     tracks: Track | _Path | Sequence[Track | _Path],
     out: _Path,
     form: Literal[
-        "vertices", "joints", "obj", "amass", "bvh", "glb", "fbx", "smplx", "trc", "c3d", "colmap", "pose2sim"
+        "vertices", "joints", "obj", "amass", "bvh", "glb", "fbx", "smplx", "trc", "c3d", "colmap", "pose2sim", "angles"
     ],
     *,
     body: Body | _Path | None = None,
@@ -750,5 +764,13 @@ def export(
     rig: str = "smpl",
     textures: Sequence[_Path] = [],
     correctives: int = 8,
+    events: _Path | None = None,
     progress: _Progress | None = None,
 ) -> str: ...
+def joint_angles(
+    track: Track | _Path,
+    *,
+    body: Body | _Path | None = None,
+    pelvis_order: Literal["rotation-first", "tilt-first"] = "rotation-first",
+) -> JointAngles: ...
+def gait(track: Track | _Path, *, body: Body | _Path | None = None) -> dict[str, Any]: ...

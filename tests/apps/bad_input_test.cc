@@ -133,6 +133,9 @@ TEST_F(BadInput, OptionsThatContradictEachOtherAreUsageErrors) {
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--axes", "world", "--out", o}, "axes of its own");
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--rig", "mixamo", "--out", o}, "--rig");
   ExpectUsageError({"export", "--track", d, "--what", "bvh", "--texture", d, "--out", o}, "--texture");
+  ExpectUsageError({"export", "--track", d, "--what", "angles", "--out", folder_ / "o.txt"}, ".csv or .mot");
+  ExpectUsageError({"export", "--track", d, "--what", "bvh", "--events", o, "--out", folder_ / "o.bvh"}, "--events");
+  ExpectUsageError({"export", "--track", d, "--what", "angles", "--events", d, "--out", folder_ / "o.csv"}, "both");
   ExpectUsageError({"body"}, "body: no verb");
 }
 

@@ -235,7 +235,8 @@ TEST_F(Verbs, ExportWritesEveryKind) {
   for (const auto& [what, name, begin] :
        {std::tuple("glb", "a.glb", "glTF"), std::tuple("fbx", "a.fbx", "Kaydara FBX Binary"),
         std::tuple("trc", "a.trc", "Path"), std::tuple("c3d", "a.c3d", "\x02\x50"),
-        std::tuple("pose2sim", "Calib.toml", "[cam_01]"), std::tuple("colmap", "sparse/cameras.txt", "# CAMERA_ID")}) {
+        std::tuple("pose2sim", "Calib.toml", "[cam_01]"), std::tuple("colmap", "sparse/cameras.txt", "# CAMERA_ID"),
+        std::tuple("angles", "a.csv", "frame,time,pelvis_tilt,"), std::tuple("angles", "a.mot", "Coordinates\n")}) {
     export_to(what, what == std::string("colmap") ? "sparse" : name);
     EXPECT_THAT(Contents(folder_ / name), StartsWith(begin)) << what;
   }
@@ -244,6 +245,11 @@ TEST_F(Verbs, ExportWritesEveryKind) {
   EXPECT_EQ(two.exit_code, 0) << two.err;
   EXPECT_THAT(two.out, HasSubstr("world    y up"));
   EXPECT_THAT(two.out, HasSubstr("mm at most"));
+  const CommandResult gait = RunWell({"export", "--track", Shared("track.npz"), "--what", "angles", "--out",
+                                      folder_ / "b.csv", "--events", folder_ / "b.json"});
+  EXPECT_THAT(gait.out, HasSubstr("gait     "));
+  EXPECT_THAT(Contents(folder_ / "b.json"), HasSubstr("\"walks\": "));
+  EXPECT_EQ(Contents(folder_ / "b.csv"), Contents(folder_ / "a.csv"));
   export_to("obj", "meshes");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "meshes"), fs::directory_iterator()), kFrames);
   RunWell({"export", "--track", Shared("track.npz"), "--what", "obj", "--frame", "0", "--out", folder_ / "one.obj"});

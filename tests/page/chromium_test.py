@@ -51,6 +51,7 @@ def main():
         faults = 0
         for what, good in (("the script ran to its end", 'data-ready="yes"' in text),
                            ("the place is told", place and re.fullmatch(r"frame 7 of 40, 0\.23 s; person_0: tracked, \d+\.\d px", place.group(1))),
+                           ("joint angles are told", re.search(r"knee angle -?\d+°, -?\d+°<", text)),
                            ("another frame is another picture", picture("#frame=5") != picture("#frame=30")),
                            ("bodies wear the video's colours", picture("#frame=5") != picture("#frame=5&texture=off")),
                            ("another side is another picture", picture("#frame=5&view=side") != picture("#frame=5&view=back")),

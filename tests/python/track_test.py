@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tracks made from Python equal the command's and agree with the truth."""
+import json
 import pathlib
 import pickle
 import tempfile
@@ -153,7 +154,8 @@ class Tracks(unittest.TestCase):
             folder = pathlib.Path(folder)
             tracked().save(folder / "track.npz")
             for form, name in (("joints", "j.npy"), ("amass", "a.npz"), ("bvh", "m.bvh"), ("glb", "b.glb"), ("fbx", "b.fbx"),
-                               ("smplx", "x.npz"), ("trc", "t.trc"), ("c3d", "c.c3d"), ("pose2sim", "Calib.toml")):
+                               ("smplx", "x.npz"), ("trc", "t.trc"), ("c3d", "c.c3d"), ("pose2sim", "Calib.toml"),
+                               ("angles", "a.csv"), ("angles", "a.mot")):
                 with self.subTest(form=form):
                     run_command("export", "--track", folder / "track.npz", "--what", form, "--out", folder / name)
                     expected = (folder / name).read_bytes()
@@ -161,6 +163,32 @@ class Tracks(unittest.TestCase):
                     text = bodyloom.export(tracked(), folder / name, form)
                     self.assertEqual((folder / name).read_bytes(), expected)
                     self.assertTrue(text.endswith(f"wrote {folder / name}\n"))
+
+    def test_joint_angles_are_the_export_s(self):
+        track = tracked()
+        angles = bodyloom.joint_angles(track)
+        self.assertEqual(angles.values.shape, (len(track), len(angles.names)))
+        self.assertEqual(angles.sigma_deg.shape, angles.values.shape)
+        np.testing.assert_array_equal(angles.timestamps, track.timestamps)
+        np.testing.assert_array_equal(angles["knee_angle_l"], angles.values[:, angles.names.index("knee_angle_l")])
+        self.assertFalse(angles.values.flags.writeable)
+        with self.assertRaises(KeyError):
+            angles["knee"]
+        with self.assertRaisesRegex(ValueError, "rotation-first"):
+            bodyloom.joint_angles(track, pelvis_order="list-first")
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            bodyloom.export(track, folder / "a.csv", "angles", events=folder / "gait.json")
+            table = np.genfromtxt(folder / "a.csv", delimiter=",", names=True)
+            for name in angles.names:
+                np.testing.assert_allclose(table[name], angles[name], rtol=0, atol=6e-5)
+            np.testing.assert_allclose(table["knee_angle_r_sigma"], angles.sigma_deg[:, angles.names.index("knee_angle_r")],
+                                       rtol=0, atol=6e-5)
+            self.assertEqual(json.loads((folder / "gait.json").read_text()), bodyloom.gait(track))
+            bodyloom.export(track, folder / "a.mot", "angles")
+            rows = np.loadtxt((folder / "a.mot").read_text().split("endheader\n")[1].splitlines()[1:])
+            tilted = bodyloom.joint_angles(track, pelvis_order="tilt-first")
+            np.testing.assert_allclose(rows[:, 1:], tilted.values, rtol=0, atol=1e-7)
 
 
 if __name__ == "__main__":

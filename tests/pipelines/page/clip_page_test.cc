@@ -69,6 +69,18 @@ TEST(ClipPage, HoldsTheClipForItsScript) {
   EXPECT_EQ(ScriptOf(html, "file-0"), Base64("HIERARCHY"));
 }
 
+TEST(ClipPage, AnglesAreTenthsOfDegreesInTheirOrder) {
+  ClipPageContent content = TwoFrames();
+  EXPECT_FALSE(Json::parse(ScriptOf(ClipPageHtml(content), "clip"))["people"][0].contains("angles"));
+  content.people[0].angle_names = {"pelvis_tilt", "knee_angle_r"};
+  content.people[0].angles_deg.resize(2, 2);
+  content.people[0].angles_deg << 12.6, -3.2, kNaN, 400;
+  EXPECT_EQ(Json::parse(ScriptOf(ClipPageHtml(content), "clip"))["people"][0]["angles"],
+            Json::parse(R"({"names": ["pelvis_tilt", "knee_angle_r"], "tenths_deg": [[126, null], [-32, 4000]]})"));
+  content.people[0].angles_deg.resize(1, 2);
+  EXPECT_THROW(ClipPageHtml(content), std::invalid_argument);
+}
+
 TEST(ClipPage, FurtherCamerasHaveVideosButtonsAndPlaces) {
   ClipPageContent content = TwoFrames();
   EXPECT_THAT(ClipPageHtml(content), Not(HasSubstr("<figure>")));
