@@ -199,7 +199,7 @@ Motion MotionOfEveryFrame(const ExportInputs& inputs, const ExportTrackRequest& 
     if (motion.HasPose(t)) continue;
     throw std::runtime_error(Concatenate(request.tracks[0], ": frame ", t, " is lost, which ",
                                          TrackFormNames()[size_t(request.form)],
-                                         " cannot say; glb, fbx, trc and c3d leave it out"));
+                                         " cannot say; glb, trc and c3d leave it out"));
   }
   report->lost_before = begin;
   report->lost_after = motion.num_frames() - end;
