@@ -79,10 +79,11 @@ std::vector<Use> Uses() {
                     {"render", "--track", "TRACK", "--what", what, "--out", std::string("OUT") + ".mp4"}});
   }
   uses.push_back({"describe", {"describe", "--track", "TRACK", "--size", "32", "--out", "OUT.npy"}});
-  for (const char* form : {"glb", "bvh", "amass", "smplx", "trc", "c3d", "colmap", "pose2sim", "vertices", "joints"}) {
-    const std::map<std::string, std::string> endings = {{"amass", ".npz"},    {"smplx", ".npz"},
-                                                        {"colmap", ""},       {"pose2sim", ".toml"},
-                                                        {"vertices", ".npy"}, {"joints", ".npy"}};
+  for (const char* form :
+       {"glb", "fbx", "bvh", "amass", "smplx", "trc", "c3d", "colmap", "pose2sim", "vertices", "joints", "angles"}) {
+    const std::map<std::string, std::string> endings = {{"amass", ".npz"},     {"smplx", ".npz"},    {"colmap", ""},
+                                                        {"pose2sim", ".toml"}, {"vertices", ".npy"}, {"joints", ".npy"},
+                                                        {"angles", ".csv"}};
     const auto ending = endings.find(form);
     uses.push_back({std::string("export --what ") + form,
                     {"export", "--track", "TRACK", "--what", form, "--out",
