@@ -82,7 +82,7 @@ class JointAngleReader {
   /// Forgets the frames before.
   void Restart() { before_.reset(); }
 
-  /// Segments by the order of SegmentJointNames(): columns x, y, z in the body's axes at rest.
+  /// Pelvis, trunk, and thighs, shanks, feet, upper arms, forearms, the right one of each first.
   static constexpr int kNumSegments = 12;
 
  private:
@@ -104,10 +104,10 @@ class JointAngleReader {
   }
 
   PelvisOrder order_;
-  std::array<int, kNumSegments> joint_{};  ///< that turns the segment
-  std::array<Eigen::Matrix3d, kNumSegments> rest_frame_;
-  std::array<int, 2> wrist_{}, hip_{};   ///< right, left
-  Eigen::Vector3d origin_from_mid_hip_;  ///< metres, in the pelvis' axes
+  std::array<int, kNumSegments> joint_{};                 ///< that turns the segment
+  std::array<Eigen::Matrix3d, kNumSegments> rest_frame_;  ///< columns x, y, z in the body's axes at rest
+  std::array<int, 2> wrist_{}, hip_{};                    ///< right, left
+  Eigen::Vector3d origin_from_mid_hip_;                   ///< metres, in the pelvis' axes
   std::optional<std::array<Eigen::Vector3d, kCount>> before_;
 };
 
