@@ -71,6 +71,18 @@ Image ReadImage(const std::string& path) { return DecodeImage(ReadImageBytes(pat
 
 std::string ReadImageBytes(const std::string& path) { return ReadFileBytes(path, kMaxImageBytes); }
 
+namespace {
+
+/// WebP's extended header (RIFF, "WEBP", "VP8X") with the flag of animation (Google, "WebP Container Specification").
+bool IsAnimatedWebp(const std::string& bytes) {
+  constexpr size_t kFlags = 20;
+  constexpr char kAnimation = 0x02;
+  return bytes.size() > kFlags && bytes.compare(0, 4, "RIFF") == 0 && bytes.compare(8, 8, "WEBPVP8X") == 0 &&
+         (bytes[kFlags] & kAnimation) != 0;
+}
+
+}  // namespace
+
 Image DecodeImage(const std::string& bytes, const std::string& path) {
   if (const auto header = ReadImageHeader(bytes); header && header->width * header->height > kMaxImagePixels) {
     throw std::runtime_error(Concatenate(path, ": an image of ", header->width, "x", header->height,
@@ -84,6 +96,11 @@ Image DecodeImage(const std::string& bytes, const std::string& path) {
     }
   } catch (const cv::Exception&) {  // a header with excessive sizes; reported below like any other fault
     decoded.release();
+  }
+  if (decoded.empty() && IsAnimatedWebp(bytes)) {
+    throw std::runtime_error(path +
+                             ": an animated WebP, which neither OpenCV nor ffmpeg decodes; convert it to GIF "
+                             "or MP4");
   }
   if (decoded.empty() || decoded.total() > size_t{kMaxImagePixels}) {
     throw std::runtime_error(path +

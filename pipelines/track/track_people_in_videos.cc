@@ -18,6 +18,7 @@
 #include "pipelines/page/write_clip_page.h"
 #include "pipelines/track/detected_people.h"
 #include "pipelines/track/overlay_video.h"
+#include "pipelines/track/people_outputs.h"
 #include "pipelines/track/picture_lines.h"
 #include "pipelines/track/track_inputs.h"
 #include "pipelines/video/track_video.h"

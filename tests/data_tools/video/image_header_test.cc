@@ -2,6 +2,7 @@
 // Image sizes in headers against OpenCV's encoders, and against hand-made files of formats that OpenCV cannot write.
 #include "data_tools/video/image_header.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -119,6 +120,16 @@ TEST(ImageHeader, AFewBytesDoNotTakeTheMemoryOfABillionPixels) {
     WriteFileAtomically(path, file);
     EXPECT_NE(FileErrorOf(path, [&] { ReadImage(path); }).find(size), std::string::npos);
   }
+}
+
+TEST(ImageHeader, AnAnimatedWebpIsNamed) {
+  std::string bytes("RIFF\x74\xd0\0\0WEBPVP8X\x0a\0\0\0\x12\0\0\0\x67\x01\0\x67\x01\0ANIM\x06\0\0\0", 38);
+  EXPECT_THAT(FileErrorOf("a.webp", [&] { DecodeImage(bytes, "a.webp"); }),
+              ::testing::HasSubstr("an animated WebP, which neither"));
+  bytes[20] = 0x10;
+  EXPECT_THAT(FileErrorOf("a.webp", [&] { DecodeImage(bytes, "a.webp"); }),
+              ::testing::HasSubstr("not an image that can be decoded"))
+      << "a broken one that stands still";
 }
 
 }  // namespace
