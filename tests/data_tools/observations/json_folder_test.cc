@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/observations/keypoint_conventions.h"
 #include "data_tools/observations/load_detections.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
