@@ -128,7 +128,7 @@ TEST_F(BadInput, OptionsThatContradictEachOtherAreUsageErrors) {
   ExpectUsageError({"track", "--detections", d, "--out", o, "--json", o}, "twice to write");
   ExpectUsageError({"track", "--detections", d, "--out", o, "--overlay", folder_ / "o.avi"}, ".mp4");
   ExpectUsageError({"track", "--detections", d, "--out", o, "--side-view"}, "--overlay");
-  ExpectUsageError({"export", "--track", d, "--what", "fbx", "--out", o}, "fbx");
+  ExpectUsageError({"export", "--track", d, "--what", "usd", "--out", o}, "usd");
   ExpectUsageError({"export", "--track", d, "--track", d, "--what", "bvh", "--out", o}, "holds one person");
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--axes", "world", "--out", o}, "axes of its own");
   ExpectUsageError({"export", "--track", d, "--what", "glb", "--rig", "mixamo", "--out", o}, "--rig");
