@@ -65,7 +65,7 @@ class Arguments(unittest.TestCase):
                     bodyloom.Keypoints, GOOD, timestamps=[0, 0])
         self.expect(ValueError, 'names: "nose" stands there twice', bodyloom.Keypoints, GOOD, names=["nose"] * 17)
         self.expect(ValueError, 'names: "coco18", expected a list of landmarks or one of coco17, body25, body25b, '
-                    "openpose_coco18, coco_wholebody23, halpe26, mediapipe33", bodyloom.Keypoints, GOOD, names="coco18")
+                    "openpose_coco18, coco_wholebody23, halpe26, mediapipe33, human36m17", bodyloom.Keypoints, GOOD, names="coco18")
         self.expect(ValueError, "expected focal_px or K, and not both", bodyloom.Camera, 640, 480)
         self.expect(ValueError, "focal_px: expected pixels above 0, found -5", bodyloom.Camera, 640, 480, focal_px=-5)
         self.expect(ValueError, "expected camera or image_size, and not both", bodyloom.LiveTracker)
