@@ -42,8 +42,10 @@ void AddPublishedMotion(const Track& track, const MultiViewClip& clip, const std
   if (!smpl) {
     result->Add("pve_mm", errors.position.mean * kMmPerMetre, "vertex error, pelvis aligned");
   }
-  AddCoordinateErrors(track, source, truth.track, body,
-                      WorldOverGround(own->pose.camera_from_world_rotation * clip.up_in_world, 0), result);
+  const bool has_vertical = !clip.up_in_world.isZero();
+  const WorldFrame world =
+      has_vertical ? WorldOverGround(own->pose.camera_from_world_rotation * clip.up_in_world, 0) : WorldFrame();
+  AddCoordinateErrors(track, source, truth.track, body, world, result);
   result->Add("truth_landmark_err_mm", truth.landmark_error_m * kMmPerMetre,
               "distance of the published motion's own landmarks to keypoints3d_optim");
   result->description +=

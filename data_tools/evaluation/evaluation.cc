@@ -28,7 +28,8 @@ std::string Padded(const std::string& text, size_t width) {
 std::string Number(double value) {
   if (!std::isfinite(value)) return "-";
   char text[32];
-  std::snprintf(text, sizeof(text), "%.3f", value);
+  constexpr double kShown = 0.0005;
+  std::snprintf(text, sizeof(text), "%.3f", std::abs(value) < kShown ? 0.0 : value);  // without the sign of zero
   return text;
 }
 
