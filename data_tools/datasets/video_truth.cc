@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "data_tools/estimates/estimate_arrays.h"
 #include "data_tools/formats/printable.h"
 #include "geometry/base/check.h"
 #include "geometry/math/rotation.h"
@@ -40,26 +41,9 @@ std::string GenderOf(const PickleValue* value) {
   return "neutral";
 }
 
-/// Finite numbers of this shape; −1: any size.
-RowMatrixXd Numbers(const NdArray& array, const std::vector<int64_t>& shape, const std::string& place) {
-  bool fits = array.is_number() && array.shape.size() == shape.size();
-  std::string expected;
-  for (size_t d = 0; d < shape.size(); ++d) {
-    fits = fits && (shape[d] < 0 || array.shape[d] == shape[d]);
-    expected += (d == 0 ? "" : "x") + (shape[d] < 0 ? std::string("n") : std::to_string(shape[d]));
-  }
-  if (!fits) throw std::runtime_error(place + ": shape " + array.ShapeText() + ", expected " + expected);
-  const std::vector<double> values = array.ToDoubles();
-  const Eigen::Index rows = shape.size() == 1 ? 1 : array.shape[0];
-  const Eigen::Index columns = rows > 0 ? static_cast<Eigen::Index>(values.size()) / rows : 0;
-  RowMatrixXd matrix = Eigen::Map<const RowMatrixXd>(values.data(), rows, columns);
-  if (!matrix.allFinite()) throw std::runtime_error(place + ": holds NaN or infinite values, expected finite numbers");
-  return matrix;
-}
-
 RowMatrixXd Numbers(const PickleValue& file, const std::string& key, const std::vector<int64_t>& shape,
                     const std::string& where) {
-  return Numbers(RequireNumbers(file, key, where), shape, where + ": " + key);
+  return RequireShape(RequireNumbers(file, key, where), shape, where, key);
 }
 
 /// Entry `person` of a list of arrays.
@@ -80,7 +64,7 @@ void SetMotion(const RowMatrixXd& poses, const RowMatrixXd& trans, const RowMatr
   motion.up = Motion::Up::kCamera;
   motion.poses = poses;
   motion.trans = trans;
-  motion.betas = betas.row(0).transpose();
+  motion.betas = Eigen::Map<const Eigen::VectorXd>(betas.data(), betas.size());
   for (Eigen::Index t = 0; t < poses.rows(); ++t) motion.timestamps.push_back(double(t) / kFps);
   track->frame_status.assign(size_t(poses.rows()), FrameStatus::kTracked);
   track->weak_camera.resize(0, 3);
@@ -109,10 +93,10 @@ void SetCameraPath(const RowMatrixXd& rows, Track* track) {
 }
 
 /// Marks frames whose flag is 0 as lost.
-void LoseFrames(const NdArray& flags, const std::string& place, Track* track) {
-  const RowMatrixXd good = Numbers(flags, {track->num_frames()}, place);
+void LoseFrames(const NdArray& flags, const std::string& where, const std::string& key, Track* track) {
+  const RowMatrixXd good = RequireShape(flags, {track->num_frames()}, where, key);
   for (int t = 0; t < track->num_frames(); ++t) {
-    if (good(0, t) == 0) track->frame_status[size_t(t)] = FrameStatus::kLost;
+    if (good.data()[t] == 0) track->frame_status[size_t(t)] = FrameStatus::kLost;
   }
 }
 
@@ -157,7 +141,7 @@ VideoTruth EmdbTruth(const PickleValue& file, const std::string& where) {
   truth.track.camera.width = WholeNumber(camera, "width", where);
   truth.track.camera.height = WholeNumber(camera, "height", where);
   SetCameraPath(Numbers(camera, "extrinsics", {T, 4, 4}, where), &truth.track);
-  LoseFrames(RequireNumbers(file, "good_frames_mask", where), where + ": good_frames_mask", &truth.track);
+  LoseFrames(RequireNumbers(file, "good_frames_mask", where), where, "good_frames_mask", &truth.track);
   return truth;
 }
 
@@ -171,11 +155,12 @@ VideoTruth ThreeDpwTruth(const PickleValue& file, int person, const std::string&
   truth.num_people = int(file.Find("poses")->items.size());
   const NdArray& poses = OfPerson(file, "poses", person, where);
   const int64_t T = RequireFrames(poses, where + ": poses");
-  RowMatrixXd betas = Numbers(OfPerson(file, "betas", person, where), {-1}, where + ": betas");
+  const RowMatrixXd betas = RequireShape(OfPerson(file, "betas", person, where), {-1}, where, "betas");
   constexpr Eigen::Index kShapeComponents = 10;  // files hold up to 300, of which the public bodies have ten
-  betas = RowMatrixXd(betas.leftCols(std::min(betas.cols(), kShapeComponents)));
-  SetMotion(Numbers(poses, {T, 72}, where + ": poses"),
-            Numbers(OfPerson(file, "trans", person, where), {T, 3}, where + ": trans"), betas, &truth.track);
+  SetMotion(RequireShape(poses, {T, 72}, where, "poses"),
+            RequireShape(OfPerson(file, "trans", person, where), {T, 3}, where, "trans"), betas, &truth.track);
+  Eigen::VectorXd& shape = truth.track.motion.betas;
+  shape.conservativeResize(std::min(shape.size(), kShapeComponents));
   Camera& camera = truth.track.camera;
   SetIntrinsics(Numbers(file, "cam_intrinsics", {3, 3}, where), where + ": cam_intrinsics", &camera);
   camera.width = int(std::lround(2 * camera.cx)), camera.height = int(std::lround(2 * camera.cy));
@@ -183,7 +168,7 @@ VideoTruth ThreeDpwTruth(const PickleValue& file, int person, const std::string&
     throw std::runtime_error(where + ": cam_intrinsics: a principal point outside any image");
   }
   SetCameraPath(Numbers(file, "cam_poses", {T, 4, 4}, where), &truth.track);
-  LoseFrames(OfPerson(file, "campose_valid", person, where), where + ": campose_valid", &truth.track);
+  LoseFrames(OfPerson(file, "campose_valid", person, where), where, "campose_valid", &truth.track);
   return truth;
 }
 
