@@ -59,7 +59,9 @@ struct Operands {
 /// Writes compute(a, b) of each pair of the broadcast operands.
 template <typename T, typename Compute>
 void Combine(const Operands<T>& operands, const NewNumbers<T>& result, const Compute& compute) {
-  const auto& [a, b, a_shape, b_shape, shape] = operands;
+  // By names of their own: clang 14 has no lambda that captures a structured binding.
+  const auto &a = operands.a, &b = operands.b;
+  const std::vector<int64_t>&a_shape = operands.a_shape, &b_shape = operands.b_shape, &shape = operands.shape;
   if (a_shape == shape && b_shape == shape) {
     for (size_t i = 0; i < result.size(); ++i) result[i] = compute(a[i], b[i]);
   } else if (a_shape == shape) {
