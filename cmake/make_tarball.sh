@@ -36,10 +36,12 @@ while read -r soname _ path _; do
   dpkg-query --search "$(readlink -f "$path")" 2>/dev/null | cut -d: -f1 >>"$scratch/packages" || true
 done < <(grep '=> /' <<<"$needed")
 patchelf --set-rpath '$ORIGIN/../lib' "$tree/bin/bodyloom"
-sort -u "$scratch/packages" | xargs -r dpkg-query -W -f='${Package} ${Version}\n' >"$tree/share/doc/bodyloom/libraries.txt"
+sort -u "$scratch/packages" | xargs -r dpkg-query -W -f='${Package} ${Version}\n' \
+  >"$tree/share/doc/bodyloom/libraries.txt"
 
 # All of them must be found in the folder, wherever it lies.
-outside=$(env -u LD_LIBRARY_PATH ldd "$tree/bin/bodyloom" | awk -v tree="$tree/" '/=> \// && index($3, tree) != 1 { print $1 }' |
+outside=$(env -u LD_LIBRARY_PATH ldd "$tree/bin/bodyloom" |
+  awk -v tree="$tree/" '/=> \// && index($3, tree) != 1 { print $1 }' |
   grep -vE '^lib(c|m|mvec|dl|pthread|rt|resolv|util|nsl|anl)\.so\.' || true)
 [ -z "$outside" ] || fail "found outside the folder: $outside"
 

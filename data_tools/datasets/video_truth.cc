@@ -18,7 +18,6 @@ namespace bodyloom {
 namespace {
 
 constexpr double kFps = 30;
-constexpr int64_t kMaxTruthFrames = 1'000'000;
 
 const PickleValue& RequireDict(const PickleValue& file, const std::string& key, const std::string& where) {
   const PickleValue* value = file.Find(key);
@@ -112,8 +111,8 @@ void ClearLostFrames(Track* track) {
 
 int64_t RequireFrames(const NdArray& array, const std::string& place) {
   const int64_t frames = array.shape.empty() ? 0 : array.shape[0];
-  if (frames < 1 || frames > kMaxTruthFrames) {
-    throw std::runtime_error(Concatenate(place, ": ", frames, " frames, expected 1 to ", kMaxTruthFrames));
+  if (frames < 1 || frames > kMaxEstimateFrames) {
+    throw std::runtime_error(Concatenate(place, ": ", frames, " frames, expected 1 to ", kMaxEstimateFrames));
   }
   return frames;
 }
@@ -185,11 +184,9 @@ bool IsThreeDpw(const PickleValue& file) {
 
 }  // namespace
 
-bool IsVideoTruth(const PickleValue& file) { return IsEmdb(file) || IsThreeDpw(file); }
-
 VideoTruth VideoTruthFromPickle(const PickleValue& file, int person, const std::string& where) {
   BODYLOOM_CHECK(person >= 0, "person ", person, " must not be negative");
-  if (!IsVideoTruth(file)) {
+  if (!IsEmdb(file) && !IsThreeDpw(file)) {
     throw std::runtime_error(where + ": expected EMDB's *_data.pkl or a sequence file of 3DPW");
   }
   const int people = IsEmdb(file) ? 1 : int(file.Find("poses")->items.size());

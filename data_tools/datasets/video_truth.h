@@ -3,9 +3,8 @@
 /// path of the camera. The files are Python pickles, read without executing code (data_tools/formats/pickle.h).
 ///
 ///   EMDB  P*/*_data.pkl          one person: smpl {poses_root T×3, poses_body T×69, trans T×3, betas 10}, camera
-///                                {intrinsics 3×3, extrinsics T×4×4 world to camera, width, height}, good_frames_mask
-/// T,
-///                                gender, name
+///                                {intrinsics 3×3, extrinsics T×4×4 world to camera, width, height},
+///                                good_frames_mask T, gender, name
 ///   3DPW  sequenceFiles/*/*.pkl  several people: lists poses T×72, trans T×3, betas ≥ 10, genders ('m', 'f'),
 ///                                campose_valid T; cam_intrinsics 3×3, cam_poses T×4×4 world to camera, sequence. The
 ///                                image's size is not told; it is twice the principal point.
@@ -30,9 +29,6 @@ struct VideoTruth {
   /// Frames that the data set calls invalid are lost.
   Track track;
 };
-
-/// Returns true for a file of one of these data sets.
-bool IsVideoTruth(const PickleValue& file);
 
 /// The motion of one of the file's people, counted from 0. Throws std::runtime_error naming `where`, the key, what it
 /// holds and what was expected, also when there are fewer people.

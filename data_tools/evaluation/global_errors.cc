@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/evaluation/global_errors.h"
 
-#include <span>
-
 #include "data_tools/evaluation/evaluation.h"
 #include "geometry/base/check.h"
 #include "geometry/math/procrustes.h"
@@ -12,18 +10,18 @@ namespace {
 
 constexpr int kEmdbWindow = 100, kEmdbFirstFrames = 2;
 
+MatrixX3d MovedBySimilarity(const MatrixX3d& points, const MatrixX3d& fitted, const MatrixX3d& target) {
+  return AlignPoints(fitted, target).target_from_source.Apply(points);
+}
+
+}  // namespace
+
 MatrixX3d StackedFrames(std::span<const MatrixX3d> frames) {
   const Eigen::Index joints = frames.front().rows();
   MatrixX3d all(joints * static_cast<Eigen::Index>(frames.size()), 3);
   for (size_t t = 0; t < frames.size(); ++t) all.middleRows(joints * static_cast<Eigen::Index>(t), joints) = frames[t];
   return all;
 }
-
-MatrixX3d MovedBySimilarity(const MatrixX3d& points, const MatrixX3d& fitted, const MatrixX3d& target) {
-  return AlignPoints(fitted, target).target_from_source.Apply(points);
-}
-
-}  // namespace
 
 double WindowError(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& true_joints, int fitted_frames,
                    const FittedMotion& moved) {

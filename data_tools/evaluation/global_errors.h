@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "geometry/math/arrays.h"
@@ -21,6 +22,9 @@ struct GlobalErrors {
 /// shorter rest is not counted. Throws std::invalid_argument when sizes disagree.
 GlobalErrors MeasureGlobalErrors(const std::vector<MatrixX3d>& joints, const std::vector<MatrixX3d>& true_joints,
                                  const MatrixX3d& roots, const MatrixX3d& true_roots);
+
+/// All points, frame after frame; at least one frame, all of as many points.
+MatrixX3d StackedFrames(std::span<const MatrixX3d> frames);
 
 /// Moves `points` by the motion of a family that takes `fitted` nearest to `target`.
 using FittedMotion =

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include "data_tools/evaluation/global_errors.h"
 #include "data_tools/evaluation/metrics.h"
@@ -69,12 +68,6 @@ double KneeFlexionDeg(const MatrixX3d& points, int side) {
 
 double LowerAnkle(const MatrixX3d& points) { return std::min(points(15, 1), points(16, 1)); }
 
-MatrixX3d Stacked(std::span<const MatrixX3d> frames) {
-  MatrixX3d all(17 * static_cast<Eigen::Index>(frames.size()), 3);
-  for (size_t t = 0; t < frames.size(); ++t) all.middleRows<17>(17 * static_cast<Eigen::Index>(t)) = frames[t];
-  return all;
-}
-
 /// The rotation about y that minimises Σ ‖Y a_i − b_i‖².
 Matrix3d YawBetween(const MatrixX3d& a, const MatrixX3d& b) {
   const double c = a.col(0).dot(b.col(0)) + a.col(2).dot(b.col(2));
@@ -135,7 +128,7 @@ void MeasurePlaces(const Compared& both, RoomErrors* errors) {
     x.emplace_back(both.track[t].rowwise() - Hip(both.track[t]).transpose());
     g.emplace_back(both.truth[t].rowwise() - Hip(both.truth[t]).transpose());
   }
-  const MatrixX3d all_x = Stacked(x), all_g = Stacked(g);
+  const MatrixX3d all_x = StackedFrames(x), all_g = StackedFrames(g);
   const Matrix3d yaw = YawBetween(all_x, all_g);
   errors->g_mpjpe_m = (all_x * yaw.transpose() - all_g).rowwise().norm().mean();
   errors->w_mpjpe_m = WindowError(both.track, both.truth, kRoomFirstFrames, MovedByYaw);

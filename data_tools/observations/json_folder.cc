@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/observations/frame_numbers.h"
 #include "geometry/base/check.h"
 
 namespace bodyloom {
@@ -94,6 +96,16 @@ void ReadJsonFrames(const std::string& folder, const std::vector<std::string>& n
                                     "first ",
                                     first_broken));
   }
+}
+
+PeopleSequence ReadPeopleFrames(const std::string& folder, const std::vector<std::string>& names, double fps,
+                                const PeopleOfJson& people_of, std::vector<std::string>* warnings) {
+  const KeypointConvention* convention = nullptr;
+  std::vector<std::vector<DetectedPerson>> frames(names.size());
+  ReadJsonFrames(
+      folder, names, [&](size_t i, const JsonNode& document) { frames[i] = people_of(document, &convention); },
+      warnings);
+  return PeopleOnGrid(std::move(frames), NumbersOrOrder(names), convention, fps, folder);
 }
 
 }  // namespace bodyloom

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data_tools/formats/json_reader.h"
+#include "data_tools/observations/people.h"
 
 namespace bodyloom {
 
@@ -26,5 +27,13 @@ void ReadFirstFrame(const std::string& folder, const std::vector<std::string>& n
 void ReadJsonFrames(const std::string& folder, const std::vector<std::string>& names,
                     const std::function<void(size_t index, const JsonNode& document)>& take,
                     std::vector<std::string>* warnings = nullptr);
+
+/// The people of one image, from its document. `convention` is null until the first person sets it.
+using PeopleOfJson =
+    std::function<std::vector<DetectedPerson>(const JsonNode& document, const KeypointConvention** convention)>;
+
+/// Reads files of one image each by ReadJsonFrames(); frame numbers by NumbersOrOrder(), people by PeopleOnGrid().
+PeopleSequence ReadPeopleFrames(const std::string& folder, const std::vector<std::string>& names, double fps,
+                                const PeopleOfJson& people_of, std::vector<std::string>* warnings);
 
 }  // namespace bodyloom

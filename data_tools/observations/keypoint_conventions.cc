@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/observations/keypoint_conventions.h"
 
+#include "geometry/base/check.h"
 #include "geometry/scene/observations.h"
 
 namespace bodyloom {
@@ -100,6 +101,17 @@ const KeypointConvention* ConventionOfCount(size_t num_points) {
     default:
       return nullptr;
   }
+}
+
+void RequireConventionOfCount(size_t num_points, const std::string& place, const KeypointConvention** convention) {
+  const KeypointConvention* found = ConventionOfCount(num_points);
+  if (found == nullptr || (*convention != nullptr && found != *convention)) {
+    ThrowFileError(place,
+                   Concatenate(num_points, " landmarks, expected ",
+                               *convention != nullptr ? "as many as before"
+                                                      : "17 (COCO), 23 or 133 (COCO-WholeBody), 26 or 136 (Halpe)"));
+  }
+  *convention = found;
 }
 
 }  // namespace bodyloom

@@ -43,4 +43,8 @@ const std::vector<const KeypointConvention*>& KnownConventions();
 /// the first ones are those named; nullptr for another number.
 const KeypointConvention* ConventionOfCount(size_t num_points);
 
+/// Sets `convention`, null before the first person of a file, to ConventionOfCount(). Throws std::runtime_error naming
+/// `place` when there is none, or another than that of the people before.
+void RequireConventionOfCount(size_t num_points, const std::string& place, const KeypointConvention** convention);
+
 }  // namespace bodyloom

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "data_tools/formats/printable.h"
-#include "data_tools/observations/frame_numbers.h"
 #include "data_tools/observations/json_folder.h"
 #include "geometry/base/check.h"
 
@@ -27,18 +26,10 @@ void CheckNames(const JsonNode& document, size_t num_points) {
 DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention** convention) {
   const JsonNode points = node.At("keypoints");
   const size_t n = points.size();
-  const KeypointConvention* found = ConventionOfCount(n);
-  if (found == nullptr || (*convention != nullptr && found != *convention)) {
-    ThrowFileError(points.place(),
-                   Concatenate(n, " landmarks, expected ",
-                               *convention != nullptr ? std::string("as many as before")
-                                                      : std::string("17 (COCO), 23 or 133 (COCO-WholeBody), 26 "
-                                                                    "or 136 (Halpe)")));
-  }
-  *convention = found;
+  RequireConventionOfCount(n, points.place(), convention);
   const std::vector<double> scores = node.At("keypoint_scores").NumbersOrNan(static_cast<int>(n));
   DetectedPerson person;
-  person.points.resize(found->names.size());
+  person.points.resize((*convention)->names.size());
   for (size_t k = 0; k < person.points.size(); ++k) {
     const JsonNode point = points.At(k);
     if (point.size() == 3) {
@@ -87,12 +78,7 @@ PeopleSequence MmposeFromJson(const JsonNode& document, double fps) {
 
 PeopleSequence ReadMmposeFolder(const std::string& folder, const std::vector<std::string>& names, double fps,
                                 std::vector<std::string>* warnings) {
-  const KeypointConvention* convention = nullptr;
-  std::vector<std::vector<DetectedPerson>> frames(names.size());
-  ReadJsonFrames(
-      folder, names, [&](size_t i, const JsonNode& document) { frames[i] = PeopleOf(document, &convention); },
-      warnings);
-  return PeopleOnGrid(std::move(frames), NumbersOrOrder(names), convention, fps, folder);
+  return ReadPeopleFrames(folder, names, fps, PeopleOf, warnings);
 }
 
 }  // namespace bodyloom

@@ -4,7 +4,6 @@
 #include <numeric>
 #include <utility>
 
-#include "data_tools/observations/frame_numbers.h"
 #include "data_tools/observations/json_folder.h"
 #include "geometry/base/check.h"
 
@@ -27,16 +26,9 @@ DetectedPerson DetectionFromJson(const JsonNode& node, const KeypointConvention*
   const bool has_confidence = table.Has("visible") && !table.At("visible").is_null();
   const std::vector<double> confidence =
       has_confidence ? table.At("visible").NumbersOrNan(n) : std::vector<double>(x.size(), 1.0);
-  const KeypointConvention* found = ConventionOfCount(x.size());
-  if (found == nullptr || (*convention != nullptr && found != *convention)) {
-    ThrowFileError(table.place(),
-                   Concatenate(n, " landmarks, expected ",
-                               *convention != nullptr ? "as many as before"
-                                                      : "17 (COCO), 23 or 133 (COCO-WholeBody), 26 or 136 (Halpe)"));
-  }
-  *convention = found;
+  RequireConventionOfCount(x.size(), table.place(), convention);
   DetectedPerson person;
-  person.points.resize(found->names.size());
+  person.points.resize((*convention)->names.size());
   for (size_t k = 0; k < person.points.size(); ++k) {
     if (x[k] != 0 || y[k] != 0) person.points[k] = DetectedKeypoint(x[k], y[k], confidence[k]);
   }
@@ -82,12 +74,7 @@ PeopleSequence UltralyticsFromJson(const JsonNode& document, double fps) {
 
 PeopleSequence ReadUltralyticsFolder(const std::string& folder, const std::vector<std::string>& names, double fps,
                                      std::vector<std::string>* warnings) {
-  const KeypointConvention* convention = nullptr;
-  std::vector<std::vector<DetectedPerson>> frames(names.size());
-  ReadJsonFrames(
-      folder, names, [&](size_t i, const JsonNode& document) { frames[i] = DetectionsOf(document, &convention); },
-      warnings);
-  return PeopleOnGrid(std::move(frames), NumbersOrOrder(names), convention, fps, folder);
+  return ReadPeopleFrames(folder, names, fps, DetectionsOf, warnings);
 }
 
 }  // namespace bodyloom

@@ -9,6 +9,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/units.h"
 #include "geometry/biomechanics/gait_extremes.h"
+#include "geometry/biomechanics/joint_angles.h"
 #include "geometry/biomechanics/track_angles.h"
 #include "geometry/body/centre_of_mass.h"
 
@@ -230,12 +231,6 @@ class GaitAnalysis {
   std::array<double, 2> length_sum_{}, length_count_{};
 };
 
-int GaitJoint(const BodyModel& body, const std::string& name) {
-  const int joint = body.FindJoint(name);
-  BODYLOOM_CHECK(joint >= 0, "gait: the body '", body.name(), "' has no joint '", name, "'");
-  return joint;
-}
-
 }  // namespace
 
 GaitReport::GaitReport()
@@ -274,9 +269,9 @@ GaitReport AnalyseGait(const BodyModel& body, const Track& track, const WorldFra
   std::array<std::array<int, 3>, 2> joints{};
   for (const size_t side : {0, 1}) {
     const std::string prefix = side == 0 ? "l_" : "r_";
-    joints[side] = {GaitJoint(body, prefix + "hip"), GaitJoint(body, prefix + "ankle"),
-                    GaitJoint(body, prefix + "foot")};
-    const int knee = GaitJoint(body, prefix + "knee");
+    const auto joint = [&](const char* name) { return RequireJoint(body, prefix + name, "gait"); };
+    joints[side] = {joint("hip"), joint("ankle"), joint("foot")};
+    const int knee = joint("knee");
     places.leg_length_m += 0.5 * ((rest.row(joints[side][0]) - rest.row(knee)).norm() +
                                   (rest.row(knee) - rest.row(joints[side][1])).norm());
     for (MatrixX3d* of : {&places.hips[side], &places.ankles[side], &places.balls[side]}) {

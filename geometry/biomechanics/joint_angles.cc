@@ -54,12 +54,6 @@ Matrix3d FrameAlong(const Vector3d& y, const Vector3d& forward) {
   return frame;
 }
 
-int RequiredJoint(const BodyModel& body, const std::string& name) {
-  const int joint = body.FindJoint(name);
-  BODYLOOM_CHECK(joint >= 0, "joint angles: the body '", body.name(), "' has no joint '", name, "'");
-  return joint;
-}
-
 }  // namespace
 
 const std::vector<std::string>& CoordinateNames() {
@@ -80,6 +74,12 @@ int FindCoordinate(const std::string& name) {
 
 bool IsAngle(int coordinate) { return coordinate < kPlaceColumn || coordinate >= kLegColumn; }
 
+int RequireJoint(const BodyModel& body, const std::string& name, const char* what) {
+  const int joint = body.FindJoint(name);
+  BODYLOOM_CHECK(joint >= 0, what, ": the body '", body.name(), "' has no joint '", name, "'");
+  return joint;
+}
+
 bool HasJointAngles(const BodyModel& body) {
   if (body.FindJoint("spine3") < 0) return false;
   for (const char* side : kSidePrefix) {
@@ -96,18 +96,19 @@ JointAngleReader::JointAngleReader(const BodyModel& body, const Eigen::VectorXd&
     : order_(order) {
   const MatrixX3d rest = body.RestJoints(betas);
   joint_[kPelvisSegment] = 0;
-  joint_[kTrunkSegment] = RequiredJoint(body, "spine3");
+  const auto find = [&](const std::string& name) { return RequireJoint(body, name, "joint angles"); };
+  joint_[kTrunkSegment] = find("spine3");
   rest_frame_[kPelvisSegment] = rest_frame_[kTrunkSegment] = BodyFrame();
   for (const int side : {0, 1}) {
     for (const SegmentRest& limb : kLimbSegments) {
       const auto segment = static_cast<size_t>(limb.segment + side);
-      joint_[segment] = RequiredJoint(body, kSidePrefix[size_t(side)] + std::string(limb.joint));
-      const int end = RequiredJoint(body, kSidePrefix[size_t(side)] + std::string(limb.end));
+      joint_[segment] = find(kSidePrefix[size_t(side)] + std::string(limb.joint));
+      const int end = find(kSidePrefix[size_t(side)] + std::string(limb.end));
       const Vector3d along = (rest.row(joint_[segment]) - rest.row(end)).transpose();
       rest_frame_[segment] =
           limb.segment == kFoot ? FrameAlong(Vector3d::UnitY(), -along) : FrameAlong(along, Vector3d::UnitZ());
     }
-    wrist_[size_t(side)] = RequiredJoint(body, kSidePrefix[size_t(side)] + std::string("wrist"));
+    wrist_[size_t(side)] = find(kSidePrefix[size_t(side)] + std::string("wrist"));
     hip_[size_t(side)] = joint_[size_t(kThigh + side)];
   }
   const double scale = (rest.row(hip_[0]) - rest.row(hip_[1])).norm() / kHipsWidth_m;

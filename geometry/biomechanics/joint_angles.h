@@ -66,6 +66,9 @@ enum class PelvisOrder {
   kTiltFirst,      ///< that of OpenSim's models; tilt and list are about the world's axes z and x
 };
 
+/// Index of a joint of the body. Throws std::invalid_argument "what: the body … has no joint …".
+int RequireJoint(const BodyModel& body, const std::string& name, const char* what);
+
 /// True if the body has the joints, by SMPL's names, that the angles need.
 bool HasJointAngles(const BodyModel& body);
 

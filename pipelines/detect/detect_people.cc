@@ -203,7 +203,6 @@ PartLabelSequence MaskOfPerson(const DetectedClip& clip, const PersonTrack& pers
 
 namespace {
 
-constexpr double kUsualFps = 30;
 constexpr double kSameTime = 1e-6;  ///< seconds
 
 void CheckSpan(const FrameSpan& span) {
@@ -220,29 +219,24 @@ FrameSource::FrameSource(const std::string& video, const FrameSpan& span)
       has_clock_(!std::isnan(reader_.frame_time())),
       playback_(PlaybackOf(reader_.info(), span.turn_deg, span.captured_fps, span.fps)),
       to_s_(span.to_s),
-      fps_((info().fps > 0 ? info().fps
-            : span.fps > 0 ? span.fps
-                           : kUsualFps) *
-           playback_.slowdown) {
+      played_fps_(PlayedFps(reader_.info(), span.fps)) {
   CheckSpan(span);
   if (span.from_s > 0) {
-    const double played_fps = fps_ / playback_.slowdown;
-    has_clock_ ? reader_.SkipTo(span.from_s) : reader_.Skip(int(std::ceil(span.from_s * played_fps - kSameTime)));
+    has_clock_ ? reader_.SkipTo(span.from_s) : reader_.Skip(int(std::ceil(span.from_s * played_fps_ - kSameTime)));
   }
   first_ = reader_.next_frame();
 }
 
 int FrameSource::num_frames() const {
   if (info().num_frames <= 0) return 0;
-  const double end =
-      to_s_ < 0 ? info().num_frames : std::min<double>(info().num_frames, to_s_ * fps_ / playback_.slowdown + 1);
+  const double end = to_s_ < 0 ? info().num_frames : std::min<double>(info().num_frames, to_s_ * played_fps_ + 1);
   return std::max(1, int(end) - first_);
 }
 
 bool FrameSource::Read(Image* frame, double* time_s) {
   at_end_ = at_end_ || !reader_.Read(frame);
   if (at_end_) return false;
-  *time_s = has_clock_ ? reader_.frame_time() / playback_.slowdown : (reader_.next_frame() - 1) / fps_;
+  *time_s = has_clock_ ? reader_.frame_time() / playback_.slowdown : (reader_.next_frame() - 1) / fps();
   at_end_ = to_s_ >= 0 && *time_s * playback_.slowdown > to_s_ + kSameTime;
   return !at_end_;
 }

@@ -34,7 +34,7 @@ class FrameSource {
   /// Approximate number of frames; 0 if the video's length is unknown.
   [[nodiscard]] int num_frames() const;
   /// Frame rate: that of the capture, else the video's, else the span's, else 30.
-  [[nodiscard]] double fps() const { return fps_; }
+  [[nodiscard]] double fps() const { return played_fps_ * playback_.slowdown; }
   [[nodiscard]] const VideoPlayback& playback() const { return playback_; }
   /// Reads the next frame; returns false at the end. May be called by any one thread at a time.
   bool Read(Image* frame, double* time_s);
@@ -48,7 +48,8 @@ class FrameSource {
   bool has_clock_;  ///< false for a folder of images
   bool at_end_ = false;
   VideoPlayback playback_;
-  double to_s_, fps_;  ///< to_s_ on the video's clock
+  double to_s_;        ///< on the video's clock
+  double played_fps_;  ///< PlayedFps()
   int first_ = 0;
 };
 

@@ -81,12 +81,12 @@ void AddAngles(const PersonOnPage& person, const WorldFrame& world, const std::v
   }
   on_page->angle_names.insert(on_page->angle_names.end(), kPlottedMiddle.begin(), kPlottedMiddle.end());
   const TrackAngles angles = AnglesOfTrack(*person.body, *person.track, world);
+  std::vector<int> columns;
+  for (const std::string& name : on_page->angle_names) columns.push_back(FindCoordinate(name));
   on_page->angles_deg.setConstant(Eigen::Index(moments.size()), Eigen::Index(on_page->angle_names.size()), kNaN);
   for (int t = 0; t < person.track->num_frames(); ++t) {
     const auto row = std::lower_bound(moments.begin(), moments.end(), angles.timestamps[size_t(t)]) - moments.begin();
-    for (size_t a = 0; a < on_page->angle_names.size(); ++a) {
-      on_page->angles_deg(row, Eigen::Index(a)) = angles.values(t, FindCoordinate(on_page->angle_names[a]));
-    }
+    on_page->angles_deg.row(row) = angles.values(t, columns);
   }
 }
 

@@ -67,17 +67,20 @@ DenseSequence MovedToCamera(DenseSequence dense, const Matrix2x3d& video_from_ca
   return dense;
 }
 
-KeypointSequence MovedToCamera(KeypointSequence keypoints, const Matrix2x3d& video_from_camera, int camera_width,
-                               int camera_height) {
-  const Matrix2x3d camera_from_video = Inverse(video_from_camera);
+KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& map, int width, int height) {
   for (Keypoint& point : keypoints.points) {
-    const Eigen::Vector2d moved = Apply(camera_from_video, point.x, point.y);
+    const Eigen::Vector2d moved = Apply(map, point.x, point.y);
     point.x = float(moved.x());
     point.y = float(moved.y());
   }
-  keypoints.image_width = camera_width;
-  keypoints.image_height = camera_height;
+  keypoints.image_width = width;
+  keypoints.image_height = height;
   return keypoints;
+}
+
+KeypointSequence MovedToCamera(KeypointSequence keypoints, const Matrix2x3d& video_from_camera, int camera_width,
+                               int camera_height) {
+  return MovedKeypoints(std::move(keypoints), Inverse(video_from_camera), camera_width, camera_height);
 }
 
 PartLabelSequence MovedToCamera(const PartLabelSequence& labels, const Matrix2x3d& video_from_camera, int camera_width,

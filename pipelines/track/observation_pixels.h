@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Moves observations from the pixels of a video to those of the camera that the tracker uses.
+/// Moves observations between the pixels of a video and those of the camera that the tracker uses.
 #pragma once
 
 #include <string>
@@ -10,6 +10,9 @@
 #include "geometry/scene/observations.h"
 
 namespace bodyloom {
+
+/// Moves keypoints at p to map · (p, 1). The image size becomes width × height.
+KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& map, int width, int height);
 
 /// Moves keypoints at p to q with p = video_from_camera · (q, 1). The image size becomes the camera's.
 KeypointSequence MovedToCamera(KeypointSequence keypoints, const Matrix2x3d& video_from_camera, int camera_width,

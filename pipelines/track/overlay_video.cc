@@ -12,22 +12,12 @@
 #include "geometry/base/parallel.h"
 #include "geometry/base/prefetcher.h"
 #include "geometry/scene/camera_path.h"
+#include "pipelines/track/observation_pixels.h"
 #include "pipelines/video/track_video.h"
 #include "render/view/overlay.h"
 
 namespace bodyloom {
 namespace {
-
-KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& map, int width, int height) {
-  for (Keypoint& point : keypoints.points) {
-    const Eigen::Vector2d moved = map * Eigen::Vector3d(point.x, point.y, 1);
-    point.x = static_cast<float>(moved.x());
-    point.y = static_cast<float>(moved.y());
-  }
-  keypoints.image_width = width;
-  keypoints.image_height = height;
-  return keypoints;
-}
 
 /// Images drawn in parallel, and the number of them without a frame of the video.
 struct DrawnFrames {

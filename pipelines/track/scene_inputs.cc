@@ -51,19 +51,6 @@ void UseCameraPath(const SceneRequest& request, SceneInputs* inputs) {
   }
 }
 
-/// Intrinsics of an anamorphic video's stored pixels in its square ones, in which errors of detectors are alike along
-/// both axes. Distortion is of normalised coordinates, so it stays.
-Camera InSquarePixels(Camera camera, const VideoInfo& video) {
-  const Matrix2x3d square_from_stored = ScaleOfPixels({camera.width, camera.height}, {video.width, video.height});
-  camera.fx *= square_from_stored(0, 0);
-  camera.fy *= square_from_stored(1, 1);
-  camera.cx = square_from_stored(0, 0) * camera.cx + square_from_stored(0, 2);
-  camera.cy = square_from_stored(1, 1) * camera.cy + square_from_stored(1, 2);
-  camera.width = video.width;
-  camera.height = video.height;
-  return camera;
-}
-
 /// Takes image size and frame rate from the video. `is_calibrated`: the camera's size is that of known intrinsics.
 void UseVideo(const SceneRequest& request, bool is_calibrated, SceneInputs* inputs) {
   const int turn_deg = request.turn_deg.value_or(0);
@@ -77,7 +64,9 @@ void UseVideo(const SceneRequest& request, bool is_calibrated, SceneInputs* inpu
   Camera& camera = inputs->camera.camera;
   const bool is_stored = camera.width == info.stored_width && camera.height == info.stored_height;
   if (camera.width > 0 && is_calibrated && is_stored && info.IsAnamorphic()) {
-    camera = InSquarePixels(camera, info);
+    // In square pixels errors of detectors are alike along both axes. Distortion is of normalised coordinates.
+    const Matrix2x3d square_from_stored = ScaleOfPixels({camera.width, camera.height}, {info.width, info.height});
+    camera = CameraOfMappedPixels(camera, square_from_stored, info.width, info.height);
   } else if (camera.width == 0 || is_stored) {
     camera.width = info.width;
     camera.height = info.height;

@@ -46,10 +46,25 @@ Matrix2x3d ScaleOfPixels(const Eigen::Vector2i& from, const Eigen::Vector2i& to)
   return (Matrix2x3d() << sx, 0, 0.5 * (sx - 1), 0, sy, 0.5 * (sy - 1)).finished();
 }
 
-VideoPlayback PlaybackOf(const VideoInfo& video, int turn_deg, double captured_fps, double fps) {
+Camera CameraOfMappedPixels(Camera camera, const Matrix2x3d& map, int width, int height) {
+  camera.fx *= map(0, 0);
+  camera.fy *= map(1, 1);
+  camera.cx = map(0, 0) * camera.cx + map(0, 2);
+  camera.cy = map(1, 1) * camera.cy + map(1, 2);
+  camera.scale *= map(0, 0);
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
+
+double PlayedFps(const VideoInfo& video, double fps) {
   constexpr double kUsualFps = 30;
-  const double played_fps = video.fps > 0 ? video.fps : fps > 0 ? fps : kUsualFps;
-  return {turn_deg, captured_fps > 0 ? captured_fps / played_fps : 1};
+  if (video.fps > 0) return video.fps;
+  return fps > 0 ? fps : kUsualFps;
+}
+
+VideoPlayback PlaybackOf(const VideoInfo& video, int turn_deg, double captured_fps, double fps) {
+  return {turn_deg, captured_fps > 0 ? captured_fps / PlayedFps(video, fps) : 1};
 }
 
 TrackVideo::TrackVideo(const std::string& path, const Track& track, const Matrix2x3d& map, int video_offset)
@@ -62,15 +77,7 @@ TrackVideo::TrackVideo(const std::string& path, const Track& track, const Matrix
 }
 
 Track TrackVideo::Moved(Track track) const {
-  // The map's shear (2e-4 in real files) is left out: 0.2 px at the border.
-  Camera& camera = track.camera;
-  camera.fx *= map_(0, 0);
-  camera.fy *= map_(1, 1);
-  camera.cx = map_(0, 0) * camera.cx + map_(0, 2);
-  camera.cy = map_(1, 1) * camera.cy + map_(1, 2);
-  camera.scale *= map_(0, 0);
-  camera.width = info().width;
-  camera.height = info().height;
+  track.camera = CameraOfMappedPixels(track.camera, map_, info().width, info().height);
   if (track.weak_camera.rows() > 0) {
     track.weak_camera.col(0) *= map_(0, 0);
   }

@@ -60,8 +60,15 @@ Matrix2x3d VideoFromCameraPixels(const Matrix2x3d& map, const Camera& camera, co
 /// Maps pixels of an image of `from` to those of an image of `to` that shows the same, both width × height.
 Matrix2x3d ScaleOfPixels(const Eigen::Vector2i& from, const Eigen::Vector2i& to);
 
+/// The camera whose image of width × height shows at map · (p, 1) what that of `camera` shows at p. The map's shear is
+/// left out: 0.2 px at the border for 2e-4, as in real files.
+Camera CameraOfMappedPixels(Camera camera, const Matrix2x3d& map, int width, int height);
+
+/// The rate at which a video is played: its own, else `fps` if above 0, else 30.
+double PlayedFps(const VideoInfo& video, double fps = 0);
+
 /// The way to play a video whose frames are turned clockwise by `turn_deg` and, if `captured_fps` > 0, were taken at
-/// that rate. `fps`: its rate where it does not tell one (30 if that is 0, too).
+/// that rate. `fps`: as in PlayedFps().
 VideoPlayback PlaybackOf(const VideoInfo& video, int turn_deg, double captured_fps, double fps = 0);
 
 /// Frame rate of a video from its timestamps: 1 / median step, clamped to [1, 240]; 30 for one frame.

@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Opens the demo's folder through the Blender add-on and compares the body that Blender renders through the imported camera with
-the overlay's own silhouette; then a track whose principal point is moved and whose first frames are lost, and a run on a video.
+"""Opens the demo's folder through the Blender add-on and compares the body that Blender renders through the imported
+camera with the overlay's own silhouette; then a track whose principal point is moved and whose first frames are lost,
+and a run on a video.
 
 usage: blender_addon_test.py COMMAND     COMMAND: the program `bodyloom`
 exit 0: silhouettes agree (IoU 0.95 and more); 1: not; 77: no Blender here, or no NumPy.
 """
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-from in_blender import has_blender, has_numpy, numpy, run_in_blender, write_changed_track
+from in_blender import command_in, numpy, require_blender, run_in_blender, write_changed_track
 
 FRAMES, LOST, SHIFT_PX, FY_FACTOR = 24, 5, (31.0, -17.0), 1.25
 ADD_ON = pathlib.Path(__file__).parents[2] / "python" / "blender" / "bodyloom_blender.py"
@@ -20,15 +20,10 @@ ADD_ON = pathlib.Path(__file__).parents[2] / "python" / "blender" / "bodyloom_bl
 
 def main():
     command = str(pathlib.Path(sys.argv[1]).resolve())
-    if not has_blender() or not has_numpy():
-        print("skipped: no blender here, or no numpy")
-        return 77
+    require_blender()
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-
-        def bodyloom(*words):
-            subprocess.run([command, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
+        bodyloom = command_in(folder)
         bodyloom("demo", "--frames", str(FRAMES), "--out", "results")
         bodyloom("render", "--track", "results/track.npz", "--what", "depth", "--out", "depth.npz")
         with numpy.load(folder / "depth.npz") as arrays:

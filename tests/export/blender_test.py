@@ -5,24 +5,18 @@
 usage: blender_test.py COMMAND     COMMAND: the program `bodyloom`
 exit 0: within a millimetre; 1: not; 77: no Blender here.
 """
-import pathlib
-import subprocess
 import sys
 import tempfile
 
-from in_blender import has_blender, run_in_blender
+from in_blender import command_in, require_blender, run_in_blender
 
 FPS, LIMIT_MM = "30", "1"
 
 
 def main():
-    command = str(pathlib.Path(sys.argv[1]).resolve())
-    if not has_blender():
-        print("skipped: no blender here")
-        return 77
+    require_blender(with_numpy=False)
     with tempfile.TemporaryDirectory() as folder:
-        def bodyloom(*words):
-            subprocess.run([command, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        bodyloom = command_in(folder)
 
         def in_blender(shown, truth):
             return run_in_blender("compare_in_blender.py", [shown, truth, FPS, LIMIT_MM], folder)

@@ -7,11 +7,10 @@ exit 0: joints within 0.1 mm, surface within a millimetre; 1: not; 77: no Blende
 """
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-from in_blender import has_blender, has_numpy, run_in_blender, write_changed_track
+from in_blender import command_in, require_blender, run_in_blender, write_changed_track
 
 FPS, SHIFT_PX = "30", (31.0, -17.0)
 JOINT_LIMIT_MM, SURFACE_LIMIT_MM = 0.1, 1.0
@@ -33,14 +32,9 @@ RIGS = {
 
 
 def main():
-    command = str(pathlib.Path(sys.argv[1]).resolve())
-    if not has_blender() or not has_numpy():
-        print("skipped: no blender here, or no numpy")
-        return 77
+    require_blender()
     with tempfile.TemporaryDirectory() as folder:
-        def bodyloom(*words):
-            subprocess.run([command, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-
+        bodyloom = command_in(folder)
         bodyloom("synth", "--motion", "demo", "--frames", "24", "--first", "60", "--fps", FPS, "--out", "clip", "--camera-motion",
                  "walking", "--quiet")
         write_changed_track(pathlib.Path(folder) / "clip" / "truth.npz", pathlib.Path(folder) / "track.npz", SHIFT_PX)

@@ -4,6 +4,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
 try:
     import numpy
@@ -13,12 +14,20 @@ except ImportError:
 FOLDER = pathlib.Path(__file__).parent
 
 
-def has_blender():
-    return shutil.which("blender") is not None
+def require_blender(with_numpy=True):
+    """Ends a test that cannot run here as skipped."""
+    if shutil.which("blender") is None or (with_numpy and numpy is None):
+        print("skipped: no blender here" + (", or no numpy" if with_numpy else ""))
+        sys.exit(77)
 
 
-def has_numpy():
-    return numpy is not None
+def command_in(folder):
+    """A function that runs the program `bodyloom`, the test's argument, in a folder with these words."""
+    command = pathlib.Path(sys.argv[1]).resolve()
+
+    def bodyloom(*words):
+        subprocess.run([command, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    return bodyloom
 
 
 def run_in_blender(judge, arguments, folder):
