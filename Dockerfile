@@ -7,7 +7,7 @@ ENV DEBIAN_FRONTEND=noninteractive
 COPY . /source
 WORKDIR /source
 RUN ./dev models && ./dev build release bodyloom_command
-RUN apt-get install -y --no-install-recommends patchelf xz-utils \
+RUN apt-get install -y --no-install-recommends patchelf python3 xz-utils \
     && cmake/make_tarball.sh build/release /out 0 \
     && mkdir /opt/bodyloom \
     && tar -C /opt/bodyloom --strip-components=1 -xJf /out/*.tar.xz

@@ -6,7 +6,7 @@
 #   lib/            every shared library that it needs, by dynamic name, but those of glibc, which the system has
 #   share/bodyloom  the pose detector's networks (where ./dev models fetched them), the add-on for Blender
 #   share/doc/bodyloom/libraries.txt   the Debian packages, with versions, that the libraries are of
-# It runs where glibc is at least as new as here. Needs cmake, ldd, patchelf, xz.
+# It runs where glibc is at least as new as here. Needs cmake, ldd, patchelf, Python, xz.
 set -euo pipefail
 
 build=$1
@@ -22,28 +22,7 @@ trap 'rm -rf "$scratch"' EXIT
 tree=$scratch/$name
 
 cmake --install "$build" --prefix "$tree" --component command --strip >/dev/null
-mkdir -p "$tree/lib"
-needed=$(ldd "$tree/bin/bodyloom")
-case $needed in *"not found"*) fail "a library is missing: $(grep -m1 'not found' <<<"$needed")" ;; esac
-while read -r soname _ path _; do
-  case $soname in
-    libc.so.* | libm.so.* | libmvec.so.* | libdl.so.* | libpthread.so.* | librt.so.* | libresolv.so.* | libutil.so.* | \
-      libnsl.so.* | libanl.so.*) continue ;;
-  esac
-  cp -L "$path" "$tree/lib/$soname"
-  chmod 644 "$tree/lib/$soname"
-  patchelf --set-rpath '$ORIGIN' "$tree/lib/$soname"
-  dpkg-query --search "$(readlink -f "$path")" 2>/dev/null | cut -d: -f1 >>"$scratch/packages" || true
-done < <(grep '=> /' <<<"$needed")
-patchelf --set-rpath '$ORIGIN/../lib' "$tree/bin/bodyloom"
-sort -u "$scratch/packages" | xargs -r dpkg-query -W -f='${Package} ${Version}\n' \
-  >"$tree/share/doc/bodyloom/libraries.txt"
-
-# All of them must be found in the folder, wherever it lies.
-outside=$(env -u LD_LIBRARY_PATH ldd "$tree/bin/bodyloom" |
-  awk -v tree="$tree/" '/=> \// && index($3, tree) != 1 { print $1 }' |
-  grep -vE '^lib(c|m|mvec|dl|pthread|rt|resolv|util|nsl|anl)\.so\.' || true)
-[ -z "$outside" ] || fail "found outside the folder: $outside"
+"$(dirname "$0")/bundle_libraries.py" "$tree/bin/bodyloom" "$tree/lib" >"$tree/share/doc/bodyloom/libraries.txt"
 
 mkdir -p "$out"
 tar -C "$scratch" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@${SOURCE_DATE_EPOCH:-0}" -cf - "$name" |

@@ -7,12 +7,16 @@ CMake in more lines than these.
 Settings (`pip install . --config-settings KEY=VALUE`):
   build-dir    a CMake build folder to build in and to keep; else a temporary one
   cmake-args   further arguments of cmake, separated by blanks
+  libraries    "bundle": a wheel for other systems, which holds the libraries that the module needs (but glibc and
+               libstdc++, which must be at least as new there) and, where `./dev models` fetched them, the detector's
+               networks
 """
 import base64
 import hashlib
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -42,9 +46,13 @@ def metadata():
     return "\n".join(lines) + "\nDescription-Content-Type: text/markdown\n\n" + readme
 
 
-def tag():
+def tag(bundled):
     interpreter = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    return f"{interpreter}-{interpreter}-{re.sub('[-.]', '_', sysconfig.get_platform())}"
+    platform = re.sub("[-.]", "_", sysconfig.get_platform())
+    if bundled:  # PEP 600: any Linux whose glibc is as new as this one.
+        glibc = os.confstr("CS_GNU_LIBC_VERSION").split()[1].replace(".", "_")
+        platform = platform.replace("linux", f"manylinux_{glibc}", 1)
+    return f"{interpreter}-{interpreter}-{platform}"
 
 
 def run(*words):
@@ -64,6 +72,21 @@ def build(build_dir, stage, arguments):
     jobs = os.environ.get("BODYLOOM_JOBS") or str(os.cpu_count())
     run("cmake", "--build", build_dir, "--target", "bodyloom_python", "-j", jobs)
     run("cmake", "--install", build_dir, "--component", "python", "--strip", "--prefix", stage)
+
+
+def bundle(package):
+    """Puts into the package's folder, and beside it, what the module needs; returns the packages, a line each."""
+    sys.path.insert(0, str(ROOT / "cmake"))
+    import bundle_libraries
+    module = next(package.glob("_bodyloom*.so"))
+    packages = bundle_libraries.bundle(module, package.parent / f"{NAME}.libs", bundle_libraries.COMPILER, unique_names=True)
+    listed = (ROOT / "cmake" / "models.txt").read_text(encoding="utf-8")
+    networks = [ROOT / "build" / "models" / name for name in re.findall(r"^file +(\S+)", listed, re.M)]
+    if all(network.is_file() for network in networks):
+        (package / "models").mkdir()
+        for network in networks:
+            shutil.copy(network, package / "models")
+    return packages
 
 
 def has_program(name):
@@ -86,16 +109,24 @@ def get_requires_for_build_sdist(config_settings=None):
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     settings = config_settings or {}
+    libraries = settings.get("libraries", "")
+    if libraries not in ("", "bundle"):
+        raise ValueError(f'libraries={libraries}: expected "bundle" or nothing')
     info = f"{NAME}-{version()}.dist-info"
-    name = f"{NAME}-{version()}-{tag()}.whl"
+    name = f"{NAME}-{version()}-{tag(libraries)}.whl"
     with tempfile.TemporaryDirectory() as scratch:
         stage = pathlib.Path(scratch, "stage")
         build_dir = pathlib.Path(settings.get("build-dir") or pathlib.Path(scratch, "build")).resolve()
         build(build_dir, stage, settings.get("cmake-args", "").split())
         package = next(stage.rglob(NAME))
-        files = {f"{NAME}/{path.name}": path.read_bytes() for path in sorted(package.iterdir())}
+        packages = bundle(package) if libraries else []
+        folders = [package, package.parent / f"{NAME}.libs"]
+        files = {str(path.relative_to(package.parent)): path.read_bytes() for folder in folders
+                 for path in sorted(folder.rglob("*")) if path.is_file()}
+    if packages:
+        files[f"{info}/libraries.txt"] = ("\n".join(packages) + "\n").encode()
     files[f"{info}/METADATA"] = metadata().encode()
-    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: {NAME}\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode()
+    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: {NAME}\nRoot-Is-Purelib: false\nTag: {tag(libraries)}\n".encode()
     files[f"{info}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     files[f"{info}/RECORD"] = ("".join(record_line(file, data) for file, data in files.items()) + f"{info}/RECORD,,\n").encode()
     unfinished = pathlib.Path(wheel_directory, name + ".part")

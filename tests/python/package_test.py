@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -50,6 +51,38 @@ class Packages(unittest.TestCase):
             recorded = {line.split(",")[0] for line in wheel.read(f"{info}/RECORD").decode().splitlines()}
             self.assertEqual(files, recorded)
             self.assertIn("Requires-Dist: numpy", wheel.read(f"{info}/METADATA").decode())
+
+    def test_the_wheel_with_its_libraries(self):
+        if not shutil.which("patchelf"):
+            self.skipTest("no patchelf here (Debian package patchelf)")
+        build = ("import sys; sys.path.insert(0, sys.argv[1]); import bodyloom_wheel as b; "
+                 "print(b.build_wheel(sys.argv[2], {'build-dir': sys.argv[3], 'libraries': 'bundle'}))")
+        done = run("-c", build, SOURCE / "python" / "build_wheel", self.folder, BUILD)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        name = done.stdout.strip()
+        self.assertRegex(name, r"^bodyloom-[\d.]+-cp3\d+-cp3\d+-manylinux_2_\d+_\w+\.whl$")
+        site = self.folder / "else where"
+        with zipfile.ZipFile(self.folder / name) as wheel:
+            info = re.sub(r"-cp3.*", ".dist-info", name)
+            self.assertGreater(len(wheel.read(f"{info}/libraries.txt").decode().splitlines()), 10)
+            wheel.extractall(site)
+        # Every library that the process holds is the wheel's, NumPy's, Python's, or glibc's and libstdc++.
+        held = ("import sys; sys.path.insert(0, sys.argv[1]); import numpy; "
+                "files = lambda: {line.split(maxsplit=5)[5].strip() for line in open('/proc/self/maps') if '.so' in line}; "
+                "before = files(); import bodyloom; bodyloom.synthetic_clip(5); print(*sorted(files() - before), sep='\\n')")
+        done = run("-c", held, site)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        libraries = done.stdout.splitlines()
+        self.assertGreater(len(libraries), 50)
+        outside = [path for path in libraries if not path.startswith(str(site))]
+        system = re.compile(r"/(lib(c|m|mvec|dl|pthread|rt|resolv|util|nsl|anl|gcc_s|stdc\+\+)\.so\.|python3)")
+        self.assertEqual([path for path in outside if not system.search(path)], [])
+
+    def test_an_unknown_kind_of_libraries(self):
+        build = ("import sys; sys.path.insert(0, sys.argv[1]); import bodyloom_wheel as b; "
+                 "b.build_wheel(sys.argv[2], {'libraries': 'some'})")
+        done = run("-c", build, SOURCE / "python" / "build_wheel", self.folder)
+        self.assertIn('libraries=some: expected "bundle" or nothing', done.stderr)
 
     def example(self, name, *words):
         return run(SOURCE / "python" / "examples" / name, *words, PYTHONPATH=os.environ["PYTHONPATH"],

@@ -28,6 +28,13 @@ TEST(ModelFiles, BesideAnInstalledProgram) {
             std::vector<std::string>{"/nowhere/usr/share/bodyloom/models"});
 }
 
+TEST(ModelFiles, BesideAPythonModule) {
+  EXPECT_EQ(ModelFolders("", "", "/nowhere/bin/python3", "/site/bodyloom/_bodyloom.so"),
+            (std::vector<std::string>{"/nowhere/share/bodyloom/models", "/site/bodyloom/models"}));
+  EXPECT_EQ(ModelFolders("mine", "", "/nowhere/bin/python3", "/site/bodyloom/_bodyloom.so"),
+            std::vector<std::string>{"mine"});
+}
+
 TEST(ModelFiles, AboveABuild) {
   const TemporaryFolder folder;
   fs::create_directories(folder.File("build/release/apps"));
