@@ -55,12 +55,7 @@ void AddRunVideosOptions(CLI::App& app, TrackPeopleInVideosRequest* request) {
       ->type_name("NAME,...")
       ->allow_extra_args(false)
       ->delimiter(',');
-  app.add_option_function<std::string>(
-         "--known", [request](const std::string& word) { request->known = KnownOfRigFromString(word); },
-         "several videos: how much of --cameras to use: intrinsics, also poses, also the clocks of a rig.json; the "
-         "rest is estimated")
-      ->default_str(ToString(request->known))
-      ->check(CLI::IsMember({"intrinsics", "poses", "clocks"}));
+  AddKnownOfRigOptions(app, &request->known, &request->same_lens, "Options");
   AddOtherRunOptions(app, request);
 }
 

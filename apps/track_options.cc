@@ -75,7 +75,8 @@ void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
   app.add_option(
          "--camera-path", c.camera_path,
          "where a camera that moves was: COLMAP's folder or images.txt/.bin (its intrinsics are used where none "
-         "are given), or this project's JSON (default: it stands still)")
+         "are given), or this project's JSON (default: it stands still); of several views a file each, with {view} in "
+         "the name, as paths/{view}.json")
       ->group(kCamera)
       ->type_name("PATH");
   app.add_option("--camera-scale", c.camera_scale_m,
@@ -277,6 +278,19 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   AddOtherTrackOptions(app, request, quiet);
 }
 
+void AddKnownOfRigOptions(CLI::App& app, KnownOfRig* known, bool* same_lens, const std::string& group) {
+  app.add_option_function<std::string>(
+         "--known", [known](const std::string& word) { *known = KnownOfRigFromString(word); },
+         "several views: how much of --cameras to use: intrinsics, also poses, also the clocks of a rig.json; the rest "
+         "is estimated")
+      ->group(group)
+      ->default_str(ToString(*known))
+      ->check(CLI::IsMember({"intrinsics", "poses", "clocks"}));
+  app.add_flag("--same-lens", *same_lens,
+               "several views: the cameras are of one kind and not zoomed, so that their focal lengths are alike")
+      ->group(group);
+}
+
 void AddTrackViewsOptions(CLI::App& app, TrackViewsRequest* request, bool* quiet) {
   app.add_option("--detections", request->view_detections,
                  std::string(kDetectionsHelp) + "; several times for several cameras, the track's first")
@@ -290,13 +304,7 @@ void AddTrackViewsOptions(CLI::App& app, TrackViewsRequest* request, bool* quiet
       ->allow_extra_args(false)
       ->delimiter(',');
   AddOtherTrackOptions(app, request, quiet);
-  app.add_option_function<std::string>(
-         "--known", [request](const std::string& word) { request->known = KnownOfRigFromString(word); },
-         "several views: how much of --cameras to use: intrinsics, also poses, also the clocks of a rig.json; the rest "
-         "is estimated")
-      ->group(kCamera)
-      ->default_str(ToString(request->known))
-      ->check(CLI::IsMember({"intrinsics", "poses", "clocks"}));
+  AddKnownOfRigOptions(app, &request->known, &request->same_lens, kCamera);
   app.add_option("--rig-out", request->rig_out,
                  "several views: their cameras and clocks (default: rig.json beside --out)")
       ->group(kWanted)

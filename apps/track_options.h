@@ -25,7 +25,9 @@ void AddSolveOptions(CLI::App& app, TrackSettings* request);
 /// Binds every field of the request to its option; defaults in --help are those of the struct. `quiet` is the verb's
 /// own.
 void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet);
-/// The same with several views.
+/// Adds --known and --same-lens, what is known of several cameras, in this group of the help.
+void AddKnownOfRigOptions(CLI::App& app, KnownOfRig* known, bool* same_lens, const std::string& group);
+/// Those of AddTrackOptions() with several views.
 void AddTrackViewsOptions(CLI::App& app, TrackViewsRequest* request, bool* quiet);
 
 }  // namespace bodyloom

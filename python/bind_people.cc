@@ -34,7 +34,8 @@ is left out.
 
 video           a video, or a folder of images, of which fps tells the rate; a list of several of cameras that stood
                 still and filmed the same people: the tracks are in the first one's frame and time, out is needed and
-                gets rig.json too, camera may be a file of all, of which known says how much to use
+                gets rig.json too, camera may be a file of all, of which known says how much to use;
+                same_lens: they are of one kind and not zoomed
 out             folder that gets what the command writes: detections.npz, person_0.npz, ..., summary.json and, as
                 asked for, overlay (a video, with side_view from the side too), masks (coarse_masks: as the network
                 gives them), report (a page); None: no file
@@ -124,7 +125,7 @@ void BindPeople(py::module_& module) {
       "run",
       [](const std::variant<Path, std::vector<Path>>& video, const std::optional<Path>& out, int people,
          std::optional<int> person, double min_seconds, std::optional<double> fps, double min_confidence,
-         const std::string& view, const std::string& known, const std::optional<CameraArgument>& camera,
+         const std::string& view, const std::string& known, bool same_lens, const std::optional<CameraArgument>& camera,
          std::optional<double> focal_px, std::optional<double> focal_35mm, const std::optional<BodyArgument>& body,
          std::optional<double> stature_m, const std::optional<Path>& prior, const std::optional<Path>& lifter,
          const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
@@ -141,6 +142,7 @@ void BindPeople(py::module_& module) {
         GivenInMemory given;
         request.out = TextOf(out);
         request.known = KnownOfRigFromString(known);
+        request.same_lens = same_lens;
         request.max_people = people, request.person = person, request.min_seconds = min_seconds;
         request.overlay = overlay, request.report = report;
         request.masks = masks, request.coarse_masks = coarse_masks;
@@ -175,6 +177,7 @@ void BindPeople(py::module_& module) {
       py::arg("video"), py::kw_only(), py::arg("out") = py::none(), py::arg("people") = 0,
       py::arg("person") = py::none(), py::arg("min_seconds") = 0.5, py::arg("fps") = py::none(),
       py::arg("min_confidence") = 0.0, py::arg("view") = "", py::arg("known") = ToString(KnownOfRig::kClocks),
+      py::arg("same_lens") = false,
       py::arg("camera") = py::none(), py::arg("focal_px") = py::none(), py::arg("focal_35mm") = py::none(),
       py::arg("body") = py::none(), py::arg("stature_m") = py::none(), py::arg("prior") = py::none(),
       py::arg("lifter") = py::none(), py::arg("detector") = "heavy", py::arg("pose_model") = py::none(),

@@ -48,6 +48,7 @@ keypoints     a list, for each camera Keypoints or the file or folder of a detec
 views         names of the views in such a file, or of the cameras
 cameras       what is known: a list of RigCameras or a file, by name or in the order of the views; `known` says how much
               of it is used, "intrinsics", "poses" or "clocks" (and what comes before)
+same_lens     the cameras are of one kind and not zoomed, so that their focal lengths are alike
 image_size, fps, focal_px, focal_35mm, min_confidence, convention   of all views that do not say themselves
 body          file; the rest as of track()
 
@@ -188,7 +189,7 @@ void BindViews(py::module_& module) {
   module.def(
       "track_views",
       [](const ViewsArgument& keypoints, const std::vector<std::string>& views,
-         const std::optional<RigArgument>& cameras, const std::string& known,
+         const std::optional<RigArgument>& cameras, const std::string& known, bool same_lens,
          std::optional<std::pair<int, int>> image_size, std::optional<double> fps, std::optional<double> focal_px,
          std::optional<double> focal_35mm, double min_confidence, const std::string& convention,
          const std::optional<Path>& body, std::optional<double> stature_m, const std::optional<Path>& prior,
@@ -197,6 +198,7 @@ void BindViews(py::module_& module) {
         TrackViewsRequest request;
         request.views = views;
         request.known = KnownOfRigFromString(known);
+        request.same_lens = same_lens;
         std::tie(request.image_width, request.image_height) = image_size.value_or(std::pair(0, 0));
         BODYLOOM_CHECK(!image_size || (request.image_width > 0 && request.image_height > 0),
                        "image_size: expected pixels above 0, found (", request.image_width, ", ", request.image_height,
@@ -224,7 +226,7 @@ void BindViews(py::module_& module) {
             progress);
       },
       py::arg("keypoints"), py::kw_only(), py::arg("views") = std::vector<std::string>(),
-      py::arg("cameras") = py::none(), py::arg("known") = ToString(defaults.known), py::arg("image_size") = py::none(),
+      py::arg("cameras") = py::none(), py::arg("known") = ToString(defaults.known), py::arg("same_lens") = false, py::arg("image_size") = py::none(),
       py::arg("fps") = py::none(), py::arg("focal_px") = py::none(), py::arg("focal_35mm") = py::none(),
       py::arg("min_confidence") = 0.0, py::arg("convention") = "", py::arg("body") = py::none(),
       py::arg("stature_m") = py::none(), py::arg("prior") = py::none(), py::arg("lifter") = py::none(),

@@ -8,7 +8,7 @@
 ///
 /// `pairs`: all pairs of the nine cameras. --known: nothing; the intrinsics; intrinsics and poses. Before they are
 /// tracked, every view's clock but the first one's is moved by --shift-frames, with every nth of its frames left out
-/// (--drop-every). With --repeat everything is tracked several times and times are medians; stages go to stderr.
+/// (--drop-every). --focal-ratio is the known logarithmic standard deviation of the ratio of two focal lengths. With --repeat everything is tracked several times and times are medians; stages go to stderr.
 /// Columns: `axes_deg`, the angle between the first two cameras' axes (folded to 90°: opposite cameras see the same
 /// outline); PA-MPJPE jointly, of the first view alone and the mean of all alone; the room of the joint track; error of
 /// the rotation from the first view to the others, of the focal lengths and of the clocks (mean over views); seconds of
@@ -169,6 +169,7 @@ BenchRow Measure(const BenchArguments& arguments, const MultiViewClip& clip, con
       view.camera = truth.camera;
     }
     if (known == "cameras") view.camera_from_rig = truth.pose;
+    view.focal_ratio_log_sigma = std::stod(arguments.Text("focal-ratio"));
   }
   TrackSequenceInput common;
   common.body = &BuiltinBody();
@@ -364,6 +365,7 @@ int main(int argc, char** argv) {
                               {"known", "none"},
                               {"shift-frames", "0"},
                               {"drop-every", "0"},
+                              {"focal-ratio", "0"},
                               {"repeat", "1"},
                               {"synthetic", "0"},
                               {"seconds", "8"},

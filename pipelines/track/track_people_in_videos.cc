@@ -164,7 +164,7 @@ void DetectInVideos(const TrackPeopleInVideosRequest& request, const PipelineCal
   }
 }
 
-std::vector<ObservedScene> ScenesOf(const std::vector<VideoOfView>& videos) {
+std::vector<ObservedScene> ScenesOf(const TrackPeopleInVideosRequest& request, const std::vector<VideoOfView>& videos) {
   std::vector<ObservedScene> scenes;
   for (const VideoOfView& view : videos) {
     TrackSequenceInput input = view.scene.ForTracker();
@@ -174,6 +174,7 @@ std::vector<ObservedScene> ScenesOf(const std::vector<VideoOfView>& videos) {
     scene.camera.knowledge = view.scene.camera_knowledge;
     scene.camera.camera = input.camera;
     scene.camera.focal_prior = input.focal_prior;
+    if (request.same_lens) scene.camera.focal_ratio_log_sigma = kSameLensLogSigma;
     scene.camera.picture_vertical = input.picture_vertical;
     scene.camera.camera_from_rig = view.camera_from_rig;
     if (view.clock.HasClock()) scene.camera.offset_s = 0;  // the times are of the first video's clock
@@ -193,7 +194,7 @@ TrackPeopleInViewsResult Solve(const TrackPeopleInVideosRequest& request, const 
   const size_t count = videos[0].seen.size();
   callbacks.Begin(
       Concatenate("tracking ", count, count == 1 ? " person in " : " people in ", videos.size(), " videos"));
-  TrackPeopleInViewsResult result = TrackPeopleInViews(ScenesOf(videos), videos[0].scene.ForTracker(), options);
+  TrackPeopleInViewsResult result = TrackPeopleInViews(ScenesOf(request, videos), videos[0].scene.ForTracker(), options);
   if (cancelled) throw Cancelled();
   for (TrackSequenceResult& person : result.people) person.track.playback = videos[0].scene.playback;
   return result;
@@ -326,6 +327,7 @@ bool HasSeveralVideos(const TrackPeopleInVideosRequest& request) { return reques
 TrackPeopleClipRequest RequestOfOneVideo(const TrackPeopleInVideosRequest& request) {
   if (request.views.size() > 1) throw RequestError("--view names several cameras: give a video of each");
   if (request.known != KnownOfRig::kClocks) throw RequestError("--known is of several cameras: give a video of each");
+  if (request.same_lens) throw RequestError("--same-lens is of several cameras: give a video of each");
   TrackPeopleClipRequest one = request;
   if (!request.videos.empty()) one.track.video = request.videos[0];
   if (!request.views.empty()) one.track.view = request.views[0];

@@ -21,6 +21,7 @@ struct TrackPeopleInVideosRequest : TrackPeopleClipRequest {
   std::vector<std::string> videos;  ///< two or more; the tracks are in the first one's frame and time
   std::vector<std::string> views;   ///< names of the cameras; empty: those of the files
   KnownOfRig known = KnownOfRig::kClocks;
+  bool same_lens = false;  ///< all cameras are of one kind and not zoomed (kSameLensLogSigma)
 };
 
 /// True if the request names several videos.

@@ -41,7 +41,7 @@ void CheckFilesOfViews(const TrackViewsRequest& request) {
   for (const std::string& path : outputs) RequireWritable(path);
 }
 
-std::vector<ObservedView> ObservedViews(const std::vector<ViewInputs>& views) {
+std::vector<ObservedView> ObservedViews(const TrackViewsRequest& request, const std::vector<ViewInputs>& views) {
   std::vector<ObservedView> observed;
   for (const ViewInputs& view : views) {
     const TrackSequenceInput input = view.inputs.ForTracker();
@@ -50,7 +50,10 @@ std::vector<ObservedView> ObservedViews(const std::vector<ViewInputs>& views) {
     one.knowledge = view.inputs.camera_knowledge;
     one.camera = input.camera;
     one.focal_prior = input.focal_prior;
+    if (request.same_lens) one.focal_ratio_log_sigma = kSameLensLogSigma;
     one.picture_vertical = input.picture_vertical;
+    one.camera_from_own = input.camera_from_scene;
+    one.camera_scale_m = input.camera_scale_m;
     one.camera_from_rig = view.camera_from_rig;
     if (view.clock.HasClock()) one.offset_s = 0;  // its timestamps are of the first view's clock
   }
@@ -60,11 +63,13 @@ std::vector<ObservedView> ObservedViews(const std::vector<ViewInputs>& views) {
 /// The plan of the joint fit: what all views share, and what is estimated of each, by name.
 std::vector<PlanEntry> PlanOfViews(const TrackViewsRequest& request, const std::vector<ViewInputs>& views) {
   std::vector<ViewInput> others;
-  for (const ObservedView& view : ObservedViews(views)) {
+  for (const ObservedView& view : ObservedViews(request, views)) {
     ViewInput& other = others.emplace_back();
     other.keypoints = view.keypoints;
     other.knowledge = view.knowledge;
     other.camera = view.camera;
+    other.focal_ratio_log_sigma = view.focal_ratio_log_sigma;
+    other.camera_from_own = view.camera_from_own;
     other.pose_known = view.camera_from_rig.has_value();
     other.clock_known = view.offset_s.has_value();
   }
@@ -139,7 +144,7 @@ TrackReport TrackViewsClip(const TrackViewsRequest& request, const PipelineCallb
     cancelled = !callbacks.ReportProgress(at.stage, solve_share * at.fraction);
     return !cancelled;
   };
-  TrackViewsResult result = TrackViews(ObservedViews(views), first.ForTracker(), options);
+  TrackViewsResult result = TrackViews(ObservedViews(request, views), first.ForTracker(), options);
   if (cancelled) throw Cancelled();
   result.joint.track.playback = first.playback;
   TrackSequenceSummary& joint = result.joint.summary;

@@ -2,6 +2,7 @@
 #include "pipelines/track/view_inputs.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -27,11 +28,24 @@ double MedianRate(const std::vector<double>& timestamps) {
   return steps.empty() ? 0 : 1 / Percentile(steps, 50);
 }
 
+constexpr const char* kViewInPath = "{view}";
+
+/// The camera path of a view: the request's with the view's name in it, if there is such a file; else it stands still.
+std::string PathOfView(const TrackViewsRequest& request, size_t v) {
+  std::string path = request.camera_path;
+  const size_t at = path.find(kViewInPath);
+  if (at == std::string::npos) return path;
+  path.replace(at, std::string(kViewInPath).size(), NamesOfViews(request.views, request.view_detections)[v]);
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) ? path : "";
+}
+
 /// One view's request, without the first one's video.
 TrackRequest RequestOfView(const TrackViewsRequest& request, size_t v) {
   TrackRequest one = request;
   one.detections = DetectionsOf(request, v);
   one.view = request.views.empty() ? "" : request.views[v];
+  one.camera_path = PathOfView(request, v);
   if (v > 0) {
     one.video = one.reference = "";
     one.from_s = 0;
@@ -50,6 +64,9 @@ TrackRequest RequestOfOneView(const TrackViewsRequest& request) {
   }
   if (request.known != KnownOfRig::kClocks) {
     throw RequestError("--known is of several views: give several --detections, or several names in --view");
+  }
+  if (request.same_lens) {
+    throw RequestError("--same-lens is of several views: give several --detections, or several names in --view");
   }
   TrackRequest one = request;
   if (!request.view_detections.empty()) one.detections = request.view_detections[0];
@@ -74,8 +91,7 @@ void CheckTrackViewsRequest(const TrackViewsRequest& request) {
       if (!seen.insert(file).second) throw RequestError("--detections " + file + " is given twice");
     }
   }
-  const std::vector<std::pair<bool, std::string>> refused = {{!request.camera_path.empty(), "--camera-path"},
-                                                             {request.camera == "weak", "--camera weak"},
+  const std::vector<std::pair<bool, std::string>> refused = {{request.camera == "weak", "--camera weak"},
                                                              {!request.dense.empty(), "--dense"},
                                                              {!request.part_labels.empty(), "--part-labels"},
                                                              {!request.init.empty(), "--init"},
@@ -83,10 +99,14 @@ void CheckTrackViewsRequest(const TrackViewsRequest& request) {
                                                              {request.dense_uv_sigma.has_value(), "--dense-uv-sigma"}};
   for (const auto& [given, option] : refused) {
     if (given)
-      throw RequestError("several views are tracked by 2D joints of cameras that stand still: leave out " + option);
+      throw RequestError("several views are tracked by their 2D joints: leave out " + option);
   }
   if (request.known != KnownOfRig::kClocks && request.cameras.empty()) {
     throw RequestError("--known says how much of --cameras to use: give --cameras FILE");
+  }
+  if (!request.camera_path.empty() && request.camera_path.find(kViewInPath) == std::string::npos) {
+    throw RequestError("--camera-path " + request.camera_path +
+                       ": several views need a path each, expected a name with {view} in it, as paths/{view}.json");
   }
   CheckTrackRequest(RequestOfView(request, 0));
 }

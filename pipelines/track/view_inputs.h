@@ -15,13 +15,14 @@
 namespace bodyloom {
 
 /// The base's settings are those of all views, its video is the first view's, and its `detections` and `view` are not
-/// used.
+/// used. In its `camera_path` {view} stands for the view's name; a view without such a file stands still.
 struct TrackViewsRequest : TrackRequest {
   /// Files of 2D joints: one that holds all views, or one a view, the first of which is the track's.
   std::vector<std::string> view_detections;
   /// Names in a file that holds several views, and of the cameras; may be empty with a file a view.
   std::vector<std::string> views;
   KnownOfRig known = KnownOfRig::kClocks;
+  bool same_lens = false;  ///< all cameras are of one kind and not zoomed (kSameLensLogSigma)
   std::string rig_out;  ///< the estimated rig (rig_io.h); empty: rig.json beside `out`
 };
 

@@ -34,6 +34,7 @@ struct SyntheticCamera {
   double fps = 30, begin_s = 1, length_s = 2.5, offset_s = 0, drift = 0;
   double focal_px = 0;     ///< 0: as of SynthCameraOptions
   bool backwards = false;  ///< another motion: this one from its end to its begin
+  SynthCameraMotion motion = SynthCameraMotion::kStill;
 };
 
 struct RigNoise {
@@ -148,8 +149,12 @@ class SyntheticRig {
       options.camera.yaw_deg = cameras[v].yaw_deg;
       options.camera.elevation_deg = cameras[v].elevation_deg;
       options.camera.focal_px = cameras[v].focal_px;
-      const SynthCamera camera = PlaceSynthCamera(BuiltinBody(), spanned, options.camera);
-      SynthClip& clip = clips.emplace_back(MakeSynthClip(BuiltinBody(), Sampled(whole, cameras[v]), camera, options));
+      options.camera_path.motion = cameras[v].motion;
+      const Motion seen = Sampled(whole, cameras[v]);
+      const bool moves = cameras[v].motion != SynthCameraMotion::kStill;
+      SynthClip& clip = clips.emplace_back(
+          moves ? MakeSynthClip(BuiltinBody(), seen, options)
+                : MakeSynthClip(BuiltinBody(), seen, PlaceSynthCamera(BuiltinBody(), spanned, options.camera), options));
       if (noise.bias_m > 0) MoveOnBody(bias, &clip);
       if (!noise.feet) LeaveOutFeet(&clip.keypoints);
       HashRandom random(100 * seed + v, {7});
@@ -166,6 +171,7 @@ class SyntheticRig {
     for (size_t v = 0; v < clips.size(); ++v) {
       ObservedView& view = views.emplace_back();
       view.keypoints = &clips[v].keypoints;
+      if (cameras[v].motion != SynthCameraMotion::kStill) view.camera_from_own = &clips[v].truth.camera_from_scene;
       if (known == Known::kNothing) continue;
       view.knowledge = CameraKnowledge::kKnown;
       view.camera = clips[v].truth.camera;
@@ -200,7 +206,7 @@ class SyntheticRig {
   [[nodiscard]] double Joint(const TrackViewsResult& result) const { return Error(result.joint.track, 0); }
   [[nodiscard]] double Alone(const TrackViewsResult& result, int v) const { return Error(result.alone[v].track, v); }
 
-  /// From the first view's camera frame to that of view v.
+  /// From the first view's camera frame to that of view v; their scenes where they move.
   [[nodiscard]] CameraPose TruePose(int v) const {
     return Compose(clips[v].camera_from_world, Inverse(clips[0].camera_from_world));
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/scene/camera_path.h"
 #include "geometry/scene/time_bracket.h"
 #include "tracking/initialise/lifted_start.h"
 #include "tracking/initialise/view_observations.h"
@@ -94,6 +95,18 @@ void AddViews(const TrackSequenceInput& input, SequenceProblem* problem) {
     const FocalPrior prior = view.focal_prior.value_or(FocalPrior::ForImage(camera.width, camera.height));
     layout.log_focal_prior = prior.log_mean;
     layout.log_focal_sigma = prior.log_sigma;
+    if (view.focal_ratio_log_sigma > 0) {
+      const Camera& first = problem->layout.camera;
+      const double log_ratio =
+          std::log(static_cast<double>(std::max(camera.width, camera.height)) / std::max(first.width, first.height));
+      if (problem->layout.focal_column >= 0) {
+        layout.log_ratio_prior = log_ratio;
+        layout.log_ratio_sigma = view.focal_ratio_log_sigma;
+      } else {
+        layout.log_focal_prior = std::log(first.fx) + log_ratio;
+        layout.log_focal_sigma = view.focal_ratio_log_sigma;
+      }
+    }
     layout.offset_prior_s = view.offset_s;
     layout.offset_sigma_s = view.offset_sigma_s;
     layout.rate_prior = view.rate;
@@ -110,6 +123,7 @@ ClipViews::ClipViews(const ClipTermInput& clip)
     View& view = views_.emplace_back();
     view.clock_known = (*clip.input.views)[v].clock_known;
     view.keypoints = &clip.views[v].keypoints;
+    view.path = (*clip.input.views)[v].camera_from_own;
     view.landmarks = FindObservedLandmarks(*clip.input.body, view.keypoints, clip.layout.num_betas);
     for (const LiftedFrame& frame : clip.views[v].lifted) {
       view.lifted.push_back(MakeLiftedPose(frame, lifted_landmarks_, metres, clip.options.lifter_min_sigma_m));
@@ -140,6 +154,13 @@ void ClipViews::StartRound(int /*round*/, const std::vector<int>& /*frames*/, Se
   }
 }
 
+CameraPose ClipViews::PoseAt(const View& view, double t) {
+  const std::vector<double>& times = view.keypoints->timestamps;
+  const double inside = std::clamp(t, times.front(), times.back());
+  const std::optional<TimeBracket> at = FindTimeBracket(times, inside);
+  return InterpolatePoses((*view.path)[at->before], (*view.path)[at->after], at->s);
+}
+
 void ClipViews::ObserveFrame(int v, size_t i, SequenceProblem* problem) const {
   const View& view = views_[v];
   const ViewState& state = problem->views[v];
@@ -147,7 +168,8 @@ void ClipViews::ObserveFrame(int v, size_t i, SequenceProblem* problem) const {
   ViewTerms& terms = problem->frames[i].views[v];
   terms.sampled_s = state.offset_s + state.rate * terms.clock_s;
   const double t = problem->timestamps[i] + terms.sampled_s;
-  const FrameState in_view = StateInCamera(local, state.camera_from_scene, problem->betas, problem->states[i]);
+  if (view.path != nullptr) terms.camera_from_own = PoseAt(view, t);
+  const FrameState in_view = StateInCamera(local, CameraOfView(terms, state), problem->betas, problem->states[i]);
   const double height_px = std::exp(state.log_focal) * stature_m_ / std::max(0.3, in_view.translation.z());
   auto& landmarks = terms.terms.Get<LandmarkTerm>();
   landmarks.seen.clear();
@@ -159,6 +181,23 @@ void ClipViews::ObserveFrame(int v, size_t i, SequenceProblem* problem) const {
                               {seen.point.x, seen.point.y},
                               kSeveralViewsSigma * KeypointSigmaPx(seen.point.confidence, height_px),
                               seen.velocity_px_s});
+  }
+  if (view.path != nullptr && !view.clock_known) {
+    // The camera's pose is that of `sampled_s`: an observation moves by the person's own velocity alone.
+    Kinematics kinematics;
+    kinematics.Set(*problem->layout.model, problem->betas, in_view.rotations, in_view.translation, false);
+    PointEvaluator points;
+    Camera camera = local.camera;
+    if (local.focal_column >= 0) camera.fx = camera.fy = std::exp(state.log_focal);
+    const CameraPose own_from_camera = Inverse(*terms.camera_from_own);
+    const CameraPose before = Compose(PoseAt(view, t - kSlopeWithin_s), own_from_camera);
+    const CameraPose after = Compose(PoseAt(view, t + kSlopeWithin_s), own_from_camera);
+    for (LandmarkObservation& seen : landmarks.seen) {
+      const Eigen::Vector3d point = points.Evaluate(kinematics, *seen.point, false);
+      Vector2d from, to;
+      if (!camera.Project(MovedPoint(before, point), &from) || !camera.Project(MovedPoint(after, point), &to)) continue;
+      seen.velocity_px_s -= (to - from) / (2 * kSlopeWithin_s);
+    }
   }
   auto& lifted = terms.terms.Get<LiftedPoseTerm>();
   lifted.pose = nullptr;
@@ -192,7 +231,8 @@ void ClipViews::Summarise(const SequenceProblem& problem, TrackSequenceSummary* 
       const auto& seen = problem.frames[t].views[v].terms.Get<LandmarkTerm>().seen;
       view.frames += seen.empty() ? 0 : 1;
       const FrameState in_view =
-          StateInCamera(*layout.local, state.camera_from_scene, problem.betas, problem.states[t]);
+          StateInCamera(*layout.local, CameraOfView(problem.frames[t].views[v], state), problem.betas,
+                        problem.states[t]);
       Kinematics kinematics;
       kinematics.Set(*problem.layout.model, problem.betas, in_view.rotations, in_view.translation, false);
       PointEvaluator points;
@@ -247,10 +287,12 @@ std::vector<PlanEntry> PlanViews(const TrackSequenceInput& input, const TrackSeq
       if (is_unknown) unknown += (unknown.empty() ? "" : ", ") + std::string(what);
     };
     add(!view.pose_known, "place and direction");
-    add(view.knowledge != CameraKnowledge::kKnown, "focal length");
+    add(view.knowledge != CameraKnowledge::kKnown,
+        view.focal_ratio_log_sigma > 0 ? "focal length, as the first one's" : "focal length");
     add(!view.clock_known, "clock");
     entries.push_back({"view " + std::to_string(v + 2), true,
-                       unknown.empty() ? "its camera and clock are known" : "estimated with the track: " + unknown});
+                       (view.camera_from_own != nullptr ? "moves along its path, " : "") +
+                           (unknown.empty() ? "its camera and clock are known" : "estimated with the track: " + unknown)});
   }
   return entries;
 }

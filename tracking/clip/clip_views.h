@@ -5,7 +5,8 @@
 ///
 /// A detected position is interpolated between the two frames on either side, if they are not more than 0.15 s apart;
 /// its velocity is the slope of a line through the detections within 0.06 s, so that the noise of a position and of its
-/// velocity are independent. The lifter's landmarks are those of the nearest frame.
+/// velocity are independent; of a view that moves, the part that its camera's motion has in it is taken out. The
+/// lifter's landmarks are those of the nearest frame.
 #pragma once
 
 #include <memory>
@@ -44,7 +45,10 @@ class ClipViews : public ClipTerm {
     ObservedLandmarks landmarks;
     std::vector<LiftedPose> lifted;  ///< of each of its own frames; empty: none
     bool clock_known = false;
+    const std::vector<CameraPose>* path = nullptr;  ///< of each of its own frames; null: it stands still
   };
+  /// Pose of a view that moves at time t of its clock, in its own scene.
+  static CameraPose PoseAt(const View& view, double t);
   /// Fills the terms of view v for frame t of the clip, which is frame i of the problem.
   void ObserveFrame(int v, size_t i, SequenceProblem* problem) const;
 

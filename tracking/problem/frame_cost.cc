@@ -59,11 +59,11 @@ ViewColumns FrameEvaluator::BeginView(const FrameLayout& layout, const ViewTerms
                                       const SharedValues& shared, Mode mode, FrameResiduals* residuals) {
   const ViewLayout& of = layout.views[view.view];
   const ViewState& pose = shared.views[view.view];
-  in_view_ = StateInCamera(*of.local, pose.camera_from_scene, shared.betas, state);
+  in_view_ = StateInCamera(*of.local, CameraOfView(view, pose), shared.betas, state);
   view_sums_.max_points = sums_.max_points;
   view_sums_.Begin(*of.local, in_view_, shared.betas, pose.log_focal, mode, residuals);
   view_sums_.SetClockShift(pose.offset_s + pose.rate * view.clock_s - view.sampled_s);
-  return {layout, of, pose, state, shared.betas, view.clock_s};
+  return {layout, view, pose, state, shared.betas};
 }
 
 void FrameEvaluator::Evaluate(const FrameLayout& layout, const FrameData& data, const FrameState& state,

@@ -44,6 +44,8 @@ struct ViewLayout {
   int clock_column = -1;  ///< 2: offset, rate
   /// Prior of each unknown: mean and σ.
   double log_focal_prior = 0, log_focal_sigma = FocalPrior().log_sigma;
+  /// Instead of that: mean and σ of the logarithm of the focal length less that of the first view's; σ = 0: none.
+  double log_ratio_prior = 0, log_ratio_sigma = 0;
   double offset_prior_s = 0, offset_sigma_s = 1;
   double rate_prior = 0, rate_sigma = 1e-3;
   std::shared_ptr<const FrameLayout> local;  ///< of the view's terms by themselves, in its camera's frame

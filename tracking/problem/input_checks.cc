@@ -129,6 +129,12 @@ void CheckViews(const TrackSequenceInput& input, const TrackSequenceOptions& opt
     BODYLOOM_CHECK(view.camera.width > 0 || view.keypoints->image_width > 0, "track: the image size of ", which,
                    " is not known");
     if (view.knowledge == CameraKnowledge::kKnown) CheckCamera(view.camera);
+    BODYLOOM_CHECK(view.camera_from_own == nullptr ||
+                       static_cast<int>(view.camera_from_own->size()) == view.keypoints->num_frames(),
+                   "track: the camera's path of ", which, " has another number of frames than its 2D joints");
+    BODYLOOM_CHECK(view.focal_ratio_log_sigma >= 0 && std::isfinite(view.focal_ratio_log_sigma),
+                   "track: the focal length of ", which, " is as the first one's within ", view.focal_ratio_log_sigma,
+                   ", expected a share, or 0");
     BODYLOOM_CHECK(view.camera_from_scene.camera_from_world_translation.allFinite() &&
                        IsRotation(view.camera_from_scene.camera_from_world_rotation, 1e-6),
                    "track: the pose of ", which, " is no rotation and translation");

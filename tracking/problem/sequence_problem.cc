@@ -52,7 +52,10 @@ std::vector<SharedPrior> SharedPriors(const SequenceProblem& problem, const Shar
     const ViewLayout& view = layout.views[v];
     const ViewState& state = values.views[v];
     const std::string which = ", view " + std::to_string(v + 2);
-    if (view.focal_column >= 0) {
+    if (view.focal_column >= 0 && view.log_ratio_sigma > 0) {
+      priors.push_back({"focal length as of view 1" + which, view.focal_column, state.log_focal - values.log_focal,
+                        view.log_ratio_prior, view.log_ratio_sigma, layout.focal_column});
+    } else if (view.focal_column >= 0) {
       priors.push_back({"focal length prior" + which, view.focal_column, state.log_focal, view.log_focal_prior,
                         view.log_focal_sigma});
     }

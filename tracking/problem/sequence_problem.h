@@ -78,11 +78,12 @@ std::vector<double> JointLevers(const BodyModel& model);
 /// Stature h(β) = h0 + g·β: highest minus lowest vertex, linearised at the mean shape.
 double StatureOfMeanShape(const BodyModel& model, int num_betas, Eigen::VectorXd* gradient);
 
-/// Gaussian prior on a shared unknown: ½ ((value − mean) / σ)².
+/// Gaussian prior on a shared unknown, or on the difference of two: ½ ((value − mean) / σ)².
 struct SharedPrior {
   std::string term;  ///< its name in the table of costs
   int column = 0;    ///< of the layout
   double value = 0, mean = 0, sigma = 1;
+  int minus_column = -1;  ///< of the unknown that is subtracted; −1: none
 };
 /// The priors on focal lengths and clocks that are not known, at these values.
 std::vector<SharedPrior> SharedPriors(const SequenceProblem& problem, const SharedValues& values);

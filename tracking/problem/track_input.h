@@ -29,8 +29,14 @@ struct ViewInput {
   /// that of the prior).
   Camera camera = {.fx = 0, .fy = 0};
   std::optional<FocalPrior> focal_prior;  ///< without it FocalPrior::ForImage()
-  CameraPose camera_from_scene;           ///< from the first view's camera frame; with a moving camera, from the scene
+  /// Where the focal length is not known: σ of the logarithm of its ratio to that of the first view, both as shares of
+  /// the image's longer side, for cameras of one kind; it takes the prior's place. 0: nothing is known of the ratio.
+  double focal_ratio_log_sigma = 0;
+  /// From the first view's camera frame; from the scene if that camera moves; to this view's own scene if this moves.
+  CameraPose camera_from_scene;
   bool pose_known = false;
+  /// Of a view that moves: poses of each of its frames in a scene of its own, metres; null: it stands still.
+  const std::vector<CameraPose>* camera_from_own = nullptr;
   /// The view's clock shows t + offset_s + rate (t − middle) when the first view's shows t; middle: of the first view's
   /// clip.
   double offset_s = 0, rate = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/math/rotation.h"
+#include "geometry/scene/camera_path.h"
 
 namespace bodyloom {
 
@@ -12,9 +13,17 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-ViewColumns::ViewColumns(const FrameLayout& layout, const ViewLayout& view, const ViewState& pose,
-                         const FrameState& state, const VectorXd& betas, double clock_s)
-    : layout_(layout), view_(view), rotation_(pose.camera_from_scene.camera_from_world_rotation), clock_s_(clock_s) {
+CameraPose CameraOfView(const ViewTerms& view, const ViewState& pose) {
+  return view.camera_from_own ? Compose(*view.camera_from_own, pose.camera_from_scene) : pose.camera_from_scene;
+}
+
+ViewColumns::ViewColumns(const FrameLayout& layout, const ViewTerms& view, const ViewState& pose,
+                         const FrameState& state, const VectorXd& betas)
+    : layout_(layout),
+      view_(layout.views[view.view]),
+      rotation_(CameraOfView(view, pose).camera_from_world_rotation),
+      clock_s_(view.clock_s) {
+  if (view.camera_from_own) own_rotation_ = view.camera_from_own->camera_from_world_rotation;
   const BodyModel& model = *layout.model;
   const int B = layout.num_betas;
   Vector3d pelvis = model.joint_template().row(0).transpose();
@@ -36,7 +45,11 @@ void ViewColumns::TakeRows(const Eigen::Ref<const RowMatrixXd>& in_view, Eigen::
   if (view_.pose_column >= 0) {
     J.middleCols<3>(view_.pose_column).noalias() = turn * by_turn_.topRows<3>();
     J.middleCols<3>(view_.pose_column).noalias() += move * by_turn_.bottomRows<3>();
-    J.middleCols<3>(view_.pose_column + 3) = move;
+    if (own_rotation_) {
+      J.middleCols<3>(view_.pose_column + 3).noalias() = move * *own_rotation_;
+    } else {
+      J.middleCols<3>(view_.pose_column + 3) = move;
+    }
   }
   if (view_.focal_column >= 0) J.col(view_.focal_column) = in_view.col(local.focal_column);
   if (view_.clock_column >= 0) {
@@ -70,7 +83,11 @@ void ViewColumns::AddSums(const FrameSystem& in_view, FrameSystem* system) const
     if (view_.pose_column >= 0) {
       taken->middleRows<3>(to).noalias() = by_turn_.topRows<3>().transpose() * turn;
       taken->middleRows<3>(to).noalias() += by_turn_.bottomRows<3>().transpose() * move;
-      taken->middleRows<3>(to + 3) = move;
+      if (own_rotation_) {
+        taken->middleRows<3>(to + 3).noalias() = own_rotation_->transpose() * move;
+      } else {
+        taken->middleRows<3>(to + 3) = move;
+      }
       to += 6;
     }
     if (local.focal_column >= 0) taken->row(to++) = rows.row(from++);

@@ -159,6 +159,17 @@ TrackStart AveragePoses(const BodyModel& body, const std::vector<TrackSequenceRe
   return start;
 }
 
+/// The paths of the cameras that move, in metres; empty for those that do not, and where the fit alone failed.
+std::vector<std::vector<CameraPose>> MetricPaths(const std::vector<ObservedView>& views,
+                                                 const std::vector<TrackSequenceResult>& alone) {
+  std::vector<std::vector<CameraPose>> paths(views.size());
+  for (size_t v = 0; v < views.size(); ++v) {
+    if (views[v].camera_from_own == nullptr || !alone[v].summary.IsUsable()) continue;
+    paths[v] = ScaledPath(*views[v].camera_from_own, alone[v].summary.camera_path.scale_m);
+  }
+  return paths;
+}
+
 }  // namespace
 
 TrackSequenceInput InputOfView(const ObservedView& view, const TrackSequenceInput& common) {
@@ -171,6 +182,8 @@ TrackSequenceInput InputOfView(const ObservedView& view, const TrackSequenceInpu
   input.camera = view.camera;
   input.focal_prior = view.focal_prior;
   input.picture_vertical = view.picture_vertical;
+  input.camera_from_scene = view.camera_from_own;
+  input.camera_scale_m = view.camera_scale_m;
   return input;
 }
 
@@ -241,6 +254,7 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
     return result;
   }
 
+  const std::vector<std::vector<CameraPose>> paths = MetricPaths(views, result.alone);
   std::vector<ViewInput> others;
   std::vector<int> index;
   for (size_t v = 1; v < views.size(); ++v) {
@@ -252,7 +266,9 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
     other.camera = view.camera;
     if (view.knowledge != CameraKnowledge::kKnown) other.camera.fx = result.alone[v].track.camera.fx;
     other.focal_prior = view.focal_prior;
+    other.focal_ratio_log_sigma = view.focal_ratio_log_sigma;
     other.picture_vertical = view.picture_vertical;
+    if (view.camera_from_own != nullptr) other.camera_from_own = &paths[v];
     other.pose_known = view.camera_from_rig.has_value();
     other.camera_from_scene =
         other.pose_known ? Compose(*view.camera_from_rig, Inverse(*views[0].camera_from_rig)) : placed[v].from_first;
@@ -261,9 +277,18 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
     other.offset_sigma_s = std::max(0.02, 3 * placed[v].offset_sigma_s);
     index.push_back(static_cast<int>(v));
   }
+  TrackSequenceInput input = InputOfView(views[0], common);
   TrackStart start = AveragePoses(*common.body, result.alone, others, index);
   start.focal_px = result.alone[0].track.camera.fx;
-  TrackSequenceInput input = InputOfView(views[0], common);
+  if (views[0].camera_from_own != nullptr) {
+    input.camera_from_scene = &paths[0];
+    input.camera_scale_m = 1;
+    FrameLayout layout;
+    layout.model = common.body;
+    for (size_t t = 0; t < start.states.size(); ++t) {
+      start.states[t] = StateInCamera(layout, paths[0][t], start.betas, std::move(start.states[t]));
+    }
+  }
   input.ground = common.ground;
   input.views = &others;
   input.start = &start;

@@ -5,7 +5,8 @@
 /// to the first and the offset between their clocks (align_motions.h), along the tree of those pairs of views that
 /// agree best; what is known is kept. The poses of all views, turned into the first view's frame, are averaged, and the
 /// whole clip is fitted from there with all observations at once: one body, and each camera's pose, focal length and
-/// clock (problem/view_terms.h).
+/// clock (problem/view_terms.h). Of a camera that moves the path must be given; then its place and direction are those
+/// of the path's scene, and a scale that the path lacks is that of the view's own fit.
 #pragma once
 
 #include <optional>
@@ -25,14 +26,23 @@ struct ObservedView {
   CameraKnowledge knowledge = CameraKnowledge::kUnknownFocal;  ///< kKnown or kUnknownFocal
   Camera camera;                                               ///< as of TrackSequenceInput
   std::optional<FocalPrior> focal_prior;
+  double focal_ratio_log_sigma = 0;  ///< as of ViewInput; of the first view it is not used
   std::optional<CameraPose> camera_from_rig;          ///< where known; of every view in the same frame, or of none
   std::optional<double> offset_s;                     ///< its clock minus the first view's, where known
   const PictureVertical* picture_vertical = nullptr;  ///< as of TrackSequenceInput
+  /// Of a camera that moves: poses of each of its frames in a scene of its own, and metres per unit, as of
+  /// TrackSequenceInput. camera_from_rig then leads to that scene.
+  const std::vector<CameraPose>* camera_from_own = nullptr;
+  double camera_scale_m = 1;
 };
 
 /// Standard deviation of a clock's offset beyond which the motion says nothing about it: a fit takes the velocities of
 /// the detector's errors for the person's.
 inline constexpr double kUntoldClock_s = 0.3;
+
+/// Standard deviation of the logarithm of the ratio of two focal lengths of cameras of one kind that are not zoomed: a
+/// lens set to another distance is longer by a percent or two.
+inline constexpr double kSameLensLogSigma = 0.02;
 
 struct TrackViewsSummary {
   std::vector<MotionAlignment> alignment;  ///< of each view with its neighbour in the tree; the first has none
@@ -42,7 +52,7 @@ struct TrackViewsSummary {
 };
 
 struct TrackViewsResult {
-  TrackSequenceResult joint;  ///< in the frame of the first view's camera; summary.views are the others that were used
+  TrackSequenceResult joint;  ///< in the first view's camera frame, or its scene; summary.views are the others that were used
   std::vector<TrackSequenceResult> alone;
   TrackViewsSummary summary;
 };

@@ -263,8 +263,22 @@ class CeresProblem::Builder {
     }
     // One residual block a parameter block: a clock has the priors of its two columns.
     const std::vector<double*> of_views = m_.ViewBlocks();
+    const auto parameter_of = [&](int block) {
+      return block == layout_.FocalBlock()
+                 ? &m_.log_focal
+                 : of_views[block - (layout_.num_blocks() - static_cast<int>(of_views.size()))];
+    };
     const std::vector<SharedPrior> priors = SharedPriors(source_, source_);
     for (size_t i = 0; i < priors.size();) {
+      if (priors[i].minus_column >= 0) {
+        const SharedPrior& prior = priors[i++];
+        const int term = m_.Term(prior.term);
+        const RowMatrixXd A{{1 / prior.sigma, -1 / prior.sigma}};
+        Add(term, -1, new LinearCost(A, VectorXd::Constant(1, -prior.mean / prior.sigma), {1, 1}),
+            m_.Loss(term, 0, 1, nullptr),
+            {parameter_of(BlockOf(prior.column)), parameter_of(BlockOf(prior.minus_column))});
+        continue;
+      }
       const int block = BlockOf(priors[i].column), columns = layout_.NumColumns(block);
       RowMatrixXd A = RowMatrixXd::Zero(columns, columns);
       VectorXd b(columns);
@@ -273,10 +287,7 @@ class CeresProblem::Builder {
         A(k, k) = 1 / priors[i].sigma;
         b[k] = -priors[i].mean / priors[i].sigma;
       }
-      double* parameter = block == layout_.FocalBlock()
-                              ? &m_.log_focal
-                              : of_views[block - (layout_.num_blocks() - static_cast<int>(of_views.size()))];
-      Add(term, -1, new LinearCost(A, b), m_.Loss(term, 0, 1, nullptr), {parameter});
+      Add(term, -1, new LinearCost(A, b), m_.Loss(term, 0, 1, nullptr), {parameter_of(block)});
     }
   }
 

@@ -10,7 +10,7 @@
 ///                         own ceres::LossFunction; terms of thousands of observations are compressed to a few blocks a
 ///                         frame (FrameRows, frame_cost.h)
 ///   "smoothness"          a joint or the translation in three frames; "velocity" in two
-///   "shape prior", "stature", "focal length prior", "clock prior, view 2"
+///   "shape prior", "stature", "focal length prior", "focal length as of view 1, view 2", "clock prior, view 2"
 ///   a user's terms        unchanged, for any number of frames
 /// All blocks of frames are evaluated together for each new point, on `num_threads` threads, while Ceres itself runs on
 /// one (its own threads sum gradients in the order in which they finish): same bytes for any number of threads.

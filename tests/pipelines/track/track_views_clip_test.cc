@@ -12,6 +12,7 @@
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
+#include "data_tools/observations/load_camera_path.h"
 #include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/rig_io.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
@@ -166,6 +167,31 @@ TEST_F(TrackViewsClipTest, ThePlanTellsWhatIsSharedAndWhatIsEstimated) {
   request.camera = "unknown-focal";
   plan = TrackViewsClip(request).solve.plan;
   EXPECT_TRUE(Plans(plan, "view right", "place and direction, focal length, clock"));
+  request.same_lens = true;
+  plan = TrackViewsClip(request).solve.plan;
+  EXPECT_TRUE(Plans(plan, "view right", "focal length, as the first one's, clock"));
+}
+
+/// A path that stays where it is, of the second view alone.
+TEST_F(TrackViewsClipTest, AViewHasAPathOfItsOwn) {
+  TrackViewsRequest request = Request();
+  std::vector<double> times;
+  for (int i = 0; i < 20; ++i) times.push_back(0.5 * i);
+  std::filesystem::create_directories(folder_ / "paths");
+  WriteCameraPath(folder_ / "paths/right.json", {times, std::vector<CameraPose>(times.size())});
+  TrackViewsClip(request);
+  const Track still = ReadTrack(request.out);
+  request.camera_path = folder_ / "paths/{view}.json";
+  TrackViewsClip(request);
+  const Track moving = ReadTrack(request.out);
+  double largest = 0;
+  for (int t = 0; t < still.num_frames(); ++t) {
+    largest = std::max(largest, (still.joints[t] - moving.joints[t]).cwiseAbs().maxCoeff());
+  }
+  EXPECT_LE(largest, 0.02) << "it differs by the weights of the vertical alone";
+  request.plan = true;
+  request.out = "";
+  EXPECT_TRUE(Plans(TrackViewsClip(request).solve.plan, "view right", "moves along its path"));
 }
 
 TEST_F(TrackViewsClipTest, AnotherMotionIsAnError) {
@@ -310,7 +336,7 @@ TEST(TrackViewsRequest, ContradictionsAreNamed) {
   expect([](Request* r) { r->views = {"c01", ""}; }, "an empty name");
   expect([](Request* r) { r->view_detections = {"a.json", "a.json"}; }, "a.json is given twice");
   expect([](Request* r) { r->view_detections.clear(); }, "give --detections");
-  expect([](Request* r) { r->camera_path = "sparse"; }, "leave out --camera-path");
+  expect([](Request* r) { r->camera_path = "sparse"; }, "several views need a path each");
   expect([](Request* r) { r->camera = "weak"; }, "leave out --camera weak");
   expect([](Request* r) { r->dense = "iuv"; }, "leave out --dense");
   expect([](Request* r) { r->part_labels = "labels.npz"; }, "leave out --part-labels");
@@ -326,6 +352,9 @@ TEST(TrackViewsRequest, ContradictionsAreNamed) {
   EXPECT_EQ(RequestOfOneView(one).view, "c01");
   one.rig_out = "rig.json";
   EXPECT_THAT([&] { RequestOfOneView(one); }, ThrowsMessage<RequestError>(HasSubstr("--rig-out is of several views")));
+  one.rig_out.clear();
+  one.same_lens = true;
+  EXPECT_THAT([&] { RequestOfOneView(one); }, ThrowsMessage<RequestError>(HasSubstr("--same-lens is of several views")));
 }
 
 TEST_F(TrackViewsClipTest, ItsRigIsExported) {

@@ -30,8 +30,15 @@ struct TwoViews {
   std::vector<ViewState> truth;
 };
 
-/// Adds views of the scene's landmarks and dense keypoints, whose clocks differ by 20 ms and 100 ppm.
-TwoViews MakeViews(const SequenceSceneOptions& options, const std::vector<ViewUnknowns>& unknowns, double noise_px) {
+/// Where a camera that moves is in frame t, from its own scene.
+CameraPose PoseInFrame(int t) {
+  return {RotationFromAxisAngle({0.02 * t, -0.05 * t, 0.3 + 0.01 * t}), Vector3d(0.05 * t - 0.2, 0.1, 0.03 * t)};
+}
+
+/// Adds views of the scene's landmarks and dense keypoints, whose clocks differ by 20 ms and 100 ppm. They move if
+/// `move` says so.
+TwoViews MakeViews(const SequenceSceneOptions& options, const std::vector<ViewUnknowns>& unknowns, double noise_px,
+                   bool move = false) {
   TwoViews two{MakeSequenceScene(options), {}};
   SequenceProblem& problem = two.scene->problem;
   std::mt19937_64 random(7);
@@ -51,14 +58,16 @@ TwoViews MakeViews(const SequenceSceneOptions& options, const std::vector<ViewUn
       truth.offset_s = 0.02;
       truth.rate = 1e-4;
     }
+    if (move) truth.camera_from_scene = Compose(Inverse(PoseInFrame(0)), truth.camera_from_scene);
     two.truth.push_back(truth);
     for (int t = 0; t < T; ++t) {
       ViewTerms terms;
       terms.view = static_cast<int>(v);
       terms.clock_s = (t - 0.5 * T) / 25.0;
       terms.sampled_s = 0.005;
+      if (move) terms.camera_from_own = PoseInFrame(t);
       const FrameState in_view =
-          StateInCamera(problem.layout, truth.camera_from_scene, two.scene->betas, two.scene->truth[t]);
+          StateInCamera(problem.layout, CameraOfView(terms, truth), two.scene->betas, two.scene->truth[t]);
       Kinematics kinematics;
       kinematics.Set(two.scene->body, two.scene->betas, in_view.rotations, in_view.translation, false);
       PointEvaluator points;
@@ -95,12 +104,16 @@ const ViewUnknowns kPoseOnly = {CameraKnowledge::kKnown, MakePinhole(1280, 720, 
 const ViewUnknowns kCalibrated = {CameraKnowledge::kKnown, MakePinhole(1280, 720, 1000), false, false};
 
 /// Central differences of the whole problem's cost, in every shared unknown and some of the frames'.
-TEST(ViewTerms, GradientIsThatOfTheCost) {
+void ExpectGradientOfTheCost(bool move, double log_ratio_sigma) {
   for (const CameraKnowledge first : {CameraKnowledge::kKnown, CameraKnowledge::kUnknownFocal}) {
     SequenceSceneOptions options;
     options.knowledge = first;
-    const TwoViews two = MakeViews(options, {kAll, kPoseOnly, kCalibrated}, 2);
-    const SequenceProblem& problem = two.scene->problem;
+    TwoViews two = MakeViews(options, {kAll, kPoseOnly, kCalibrated}, 2, move);
+    SequenceProblem& problem = two.scene->problem;
+    if (first == CameraKnowledge::kUnknownFocal) {
+      problem.layout.views[0].log_ratio_prior = 0.07;
+      problem.layout.views[0].log_ratio_sigma = log_ratio_sigma;
+    }
     ChainProblem chain(problem, false, false, 1);
     const ChainPoint x(problem.states, problem);
     chain.Linearise(x);
@@ -126,10 +139,17 @@ TEST(ViewTerms, GradientIsThatOfTheCost) {
   }
 }
 
+TEST(ViewTerms, GradientIsThatOfTheCost) { ExpectGradientOfTheCost(false, 0); }
+TEST(ViewTerms, GradientOfViewsThatMove) { ExpectGradientOfTheCost(true, 0); }
+TEST(ViewTerms, GradientWithFocalLengthsAlike) { ExpectGradientOfTheCost(false, 1e-4); }
+
 /// The matrix is JᵀJ of the residuals that Ceres gets one by one, and of the compressed ones.
-TEST(ViewTerms, CeresHasTheSameCostGradientAndTerms) {
-  const TwoViews two = MakeViews({}, {kAll, kPoseOnly}, 2);
-  const SequenceProblem& problem = two.scene->problem;
+void ExpectSameInCeres(bool move) {
+  SequenceSceneOptions options;
+  if (move) options.knowledge = CameraKnowledge::kUnknownFocal;
+  TwoViews two = MakeViews(options, {kAll, kPoseOnly}, 2, move);
+  SequenceProblem& problem = two.scene->problem;
+  if (move) problem.layout.views[0].log_ratio_prior = 0.07, problem.layout.views[0].log_ratio_sigma = 1e-3;
   ChainProblem chain(problem, false, false, 2);
   const double expected = chain.Linearise(ChainPoint(problem.states, problem));
   VectorXd expected_gradient(chain.gradient().size() + chain.shared_gradient().size());
@@ -148,6 +168,9 @@ TEST(ViewTerms, CeresHasTheSameCostGradientAndTerms) {
     EXPECT_NEAR(ceres.CostByTerm()[at - ceres.terms().begin()], in_view->cost, 1e-10 * in_view->cost);
   }
 }
+
+TEST(ViewTerms, CeresHasTheSameCostGradientAndTerms) { ExpectSameInCeres(false); }
+TEST(ViewTerms, CeresHasTheSameOfViewsThatMoveAndFocalLengthsAlike) { ExpectSameInCeres(true); }
 
 /// Both engines find the same minimum, and with exact observations the true camera, focal length and clock.
 TEST(ViewTerms, BothEnginesFindTheView) {

@@ -76,6 +76,69 @@ TEST(TrackViews, AllIsKnown) {
   EXPECT_EQ(view.offset_sigma_s, 0);
 }
 
+/// Hands hold the cameras; their paths are given, each in a scene of its own.
+TEST(TrackViews, CamerasThatMove) {
+  SyntheticCamera first = kFirst, second = kSecond;
+  second.motion = SynthCameraMotion::kHandHeld;
+  const SyntheticRig one({first, second});
+  TrackViewsResult result = one.Track(Known::kNothing);
+  ExpectBetterThanAlone(one, result, 1.7);
+  ExpectViewFound(one, result, 1, 0.1);
+
+  first.motion = SynthCameraMotion::kWalking;
+  const SyntheticRig both({first, second});
+  result = both.Track(Known::kNothing);
+  ExpectBetterThanAlone(both, result, 1.7);
+  ExpectViewFound(both, result, 1, 0.1);
+  ASSERT_EQ(result.joint.track.camera_from_scene.size(), both.clips[0].truth.camera_from_scene.size());
+
+  // Without the path the second view cannot be explained.
+  std::vector<ObservedView> still = one.Views(Known::kIntrinsics);
+  const double with_path = SyntheticRig::Track(still).joint.summary.views.at(0).reprojection_median_px;
+  still[1].camera_from_own = nullptr;
+  const TrackViewsResult wrong = SyntheticRig::Track(still);
+  EXPECT_TRUE(!wrong.joint.summary.IsUsable() ||
+              wrong.joint.summary.views.at(0).reprojection_median_px > 1.5 * with_path);
+}
+
+/// A path whose unit is not a metre: the person tells it.
+TEST(TrackViews, AMovingCameraWhosePathHasNoMetre) {
+  SyntheticCamera second = kSecond;
+  second.motion = SynthCameraMotion::kWalking;
+  const SyntheticRig rig({kFirst, second});
+  std::vector<ObservedView> views = rig.Views(Known::kIntrinsics);
+  const std::vector<CameraPose> halved = ScaledPath(*views[1].camera_from_own, 0.5);
+  views[1].camera_from_own = &halved;
+  views[1].camera_scale_m = 0;
+  const TrackViewsResult result = SyntheticRig::Track(views);
+  ExpectBetterThanAlone(rig, result, 1.5);
+  EXPECT_LE(rig.RotationErrorDeg(result.joint.summary.views.at(0), 1), 2.5);
+}
+
+/// Lenses of one kind: the focal length that one view tells better is the other's.
+TEST(TrackViews, CamerasOfOneKind) {
+  double own = 0, alike = 0;
+  for (const uint64_t seed : {1, 2}) {
+    std::vector<SyntheticCamera> cameras = RandomRigCameras(seed, 2, 3);
+    for (SyntheticCamera& camera : cameras) camera.focal_px = 900 + 50.0 * static_cast<double>(seed);
+    const SyntheticRig rig(cameras, RandomRigMotion(seed, 4), {.detector = 1, .bias_m = 0.02}, seed);
+    std::vector<ObservedView> views = rig.Views(Known::kNothing);
+    const auto ratio = [&](const TrackViewsResult& result) {
+      return std::abs(std::log(result.joint.track.camera.fx / result.joint.summary.views.at(0).camera.fx));
+    };
+    own += ratio(SyntheticRig::Track(views));
+    views[1].focal_ratio_log_sigma = kSameLensLogSigma;
+    const TrackViewsResult result = SyntheticRig::Track(views);
+    EXPECT_LE(ratio(result), 2 * kSameLensLogSigma);
+    alike += ratio(result);
+    // With the first one known, so is the second.
+    views[0].knowledge = CameraKnowledge::kKnown;
+    views[0].camera = rig.clips[0].truth.camera;
+    EXPECT_NEAR(SyntheticRig::Track(views).joint.summary.views.at(0).camera.fx / rig.clips[0].truth.camera.fx, 1, 0.05);
+  }
+  EXPECT_LT(alike, 0.5 * own);
+}
+
 TEST(TrackViews, ThreeViews) {
   const SyntheticRig rig({kFirst, kSecond, kThird});
   const TrackViewsResult result = rig.Track(Known::kNothing);

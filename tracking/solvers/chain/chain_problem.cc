@@ -226,6 +226,11 @@ double ChainProblem::Cost(const ChainPoint& point) {
   return couplings_.empty() ? cost : cost + EvaluateCouplings(point, false);
 }
 
+std::ptrdiff_t ChainProblem::SharedIndexOf(int column) const {
+  const auto found = std::lower_bound(shared_columns_.begin(), shared_columns_.end(), column);
+  return found == shared_columns_.end() || *found != column ? -1 : found - shared_columns_.begin();
+}
+
 void ChainProblem::AddSharedPriors(const ChainPoint& point) {
   if (!shape_constant_) {
     const int B = problem_.layout.num_betas;
@@ -233,12 +238,19 @@ void ChainProblem::AddSharedPriors(const ChainPoint& point) {
     shared_gradient_.head(B) += shape_prior_.transpose() * (shape_prior_ * point.betas + shape_offset_);
   }
   for (const SharedPrior& prior : SharedPriors(problem_, point)) {
-    const auto column = std::lower_bound(shared_columns_.begin(), shared_columns_.end(), prior.column);
-    if (column == shared_columns_.end() || *column != prior.column) continue;
-    const auto i = column - shared_columns_.begin();
     const double information = 1 / (prior.sigma * prior.sigma);
-    shared_(i, i) += information;
-    shared_gradient_[i] += information * (prior.value - prior.mean);
+    const auto add = [&](std::ptrdiff_t i, double sign) {
+      if (i < 0) return;
+      shared_(i, i) += information;
+      shared_gradient_[i] += sign * information * (prior.value - prior.mean);
+    };
+    const std::ptrdiff_t i = SharedIndexOf(prior.column), j = SharedIndexOf(prior.minus_column);
+    add(i, 1);
+    add(j, -1);
+    if (i >= 0 && j >= 0) {
+      shared_(i, j) -= information;
+      shared_(j, i) -= information;
+    }
   }
 }
 

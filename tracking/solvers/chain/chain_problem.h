@@ -171,6 +171,8 @@ class ChainProblem : public ChainSource {
   void SumShared(const ChainPoint& point);
   double SharedCost(const ChainPoint& point) const;
   void AddSharedPriors(const ChainPoint& point);
+  /// Index of a layout's column among the shared unknowns that are estimated; −1: not one of them.
+  [[nodiscard]] std::ptrdiff_t SharedIndexOf(int column) const;
   [[nodiscard]] bool HasAcceleration(size_t t) const;
   [[nodiscard]] bool HasVelocity(size_t t) const;
   /// Of joint (or translation) a in frames end − 2, end − 1, end: Jacobians of σ r, 1/σ², and r/σ.

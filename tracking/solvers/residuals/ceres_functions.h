@@ -29,20 +29,29 @@ class GemanMcClureLoss : public ceres::LossFunction {
   double c_;
 };
 
-// Gaussian prior on one parameter block: r = A x + b.
+// Gaussian prior on parameter blocks: r = A x + b, with x the blocks one after another.
 
 class LinearCost : public ceres::CostFunction {
  public:
-  LinearCost(RowMatrixXd A, Eigen::VectorXd b) : A_(std::move(A)), b_(std::move(b)) {
+  /// `blocks`: their sizes; empty: one block of all columns.
+  LinearCost(RowMatrixXd A, Eigen::VectorXd b, std::vector<int> blocks = {}) : A_(std::move(A)), b_(std::move(b)) {
+    if (blocks.empty()) blocks = {static_cast<int>(A_.cols())};
     set_num_residuals(static_cast<int>(A_.rows()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(A_.cols()));
+    *mutable_parameter_block_sizes() = std::move(blocks);
   }
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     Eigen::Map<Eigen::VectorXd> r(residuals, A_.rows());
-    r = A_ * Eigen::Map<const Eigen::VectorXd>(parameters[0], A_.cols()) + b_;
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<RowMatrixXd> J(jacobians[0], A_.rows(), A_.cols());
-      J = A_;
+    r = b_;
+    Eigen::Index column = 0;
+    for (size_t i = 0; i < parameter_block_sizes().size(); ++i) {
+      const int size = parameter_block_sizes()[i];
+      const auto A = A_.middleCols(column, size);
+      r += A * Eigen::Map<const Eigen::VectorXd>(parameters[i], size);
+      if (jacobians != nullptr && jacobians[i] != nullptr) {
+        Eigen::Map<RowMatrixXd> J(jacobians[i], A.rows(), size);
+        J = A;
+      }
+      column += size;
     }
     return true;
   }

@@ -105,7 +105,10 @@ ClipGround::ClipGround(const ClipTermInput& clip)
       views_(clip.views),
       why_not_(WhyNoGround(clip.input, clip.options)) {
   if (clip.input.views == nullptr) return;
-  for (const ViewInput& view : *clip.input.views) view_lines_.push_back(view.picture_vertical);
+  for (const ViewInput& view : *clip.input.views) {
+    view_lines_.push_back(view.camera_from_own == nullptr ? view.picture_vertical : nullptr);
+    view_paths_.push_back(view.camera_from_own);
+  }
 }
 
 std::unique_ptr<ClipTerm> MakeClipGround(const ClipTermInput& clip) { return std::make_unique<ClipGround>(clip); }
@@ -141,9 +144,9 @@ void ClipGround::FindVertical(const SequenceProblem& problem, Shot* shot) const 
     std::vector<UpOfView> ups;
     if (shot->up.found) ups.push_back({shot->up.up, Vector3d::UnitZ()});
     for (size_t v = 0; v < views_.size(); ++v) {
-      const UpEstimate there = EstimateUp(FramesOfView(v, problem, *shot));
+      const std::optional<UpOfView> there = UpInOwnScene(v, problem, *shot);
       const Eigen::Matrix3d& R = problem.views[v].camera_from_scene.camera_from_world_rotation;
-      if (there.found) ups.push_back({R.transpose() * there.up, R.row(2).transpose()});
+      if (there) ups.push_back({R.transpose() * there->up, R.transpose() * there->axis});
     }
     if (!ups.empty()) {
       const JoinedUps joined = JoinUps(ups);
@@ -155,14 +158,28 @@ void ClipGround::FindVertical(const SequenceProblem& problem, Shot* shot) const 
   JoinLines(problem, shot);
 }
 
-std::span<const LiftedFrame> ClipGround::FramesOfView(size_t v, const SequenceProblem& problem,
-                                                      const Shot& shot) const {
+std::optional<UpOfView> ClipGround::UpInOwnScene(size_t v, const SequenceProblem& problem, const Shot& shot) const {
+  if (views_[v].lifted.empty()) return std::nullopt;
   const std::vector<double>& times = views_[v].keypoints.timestamps;
-  if (views_[v].lifted.empty()) return {};
   const double offset = problem.views[v].offset_s;
   const auto at = [&](double time) { return std::lower_bound(times.begin(), times.end(), time) - times.begin(); };
   const auto first = at(timestamps_[shot.begin] + offset), last = at(timestamps_[shot.end - 1] + offset);
-  return std::span(views_[v].lifted).subspan(first, std::max<std::ptrdiff_t>(0, last - first));
+  if (last <= first) return std::nullopt;
+  const auto frames = std::span(views_[v].lifted).subspan(first, last - first);
+  UpOfView result{Vector3d::Zero(), Vector3d::UnitZ()};
+  std::vector<LiftedFrame> turned;
+  if (view_paths_[v] != nullptr) {
+    turned.assign(frames.begin(), frames.end());
+    for (std::ptrdiff_t t = first; t < last; ++t) {
+      const Eigen::Matrix3d own_from_camera = (*view_paths_[v])[t].camera_from_world_rotation.transpose();
+      turned[t - first].up = own_from_camera * turned[t - first].up;
+      if (t == (first + last) / 2) result.axis = own_from_camera.col(2);
+    }
+  }
+  const UpEstimate up = EstimateUp(turned.empty() ? frames : turned);
+  if (!up.found) return std::nullopt;
+  result.up = up.up;
+  return result;
 }
 
 void ClipGround::JoinLines(const SequenceProblem& problem, Shot* shot) const {

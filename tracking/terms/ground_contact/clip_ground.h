@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "tracking/initialise/ground_plane.h"
@@ -52,9 +53,9 @@ class ClipGround : public ClipTerm {
   };
   /// The lifter's vertical in all views, or the known one, joined with the lines.
   void FindVertical(const SequenceProblem& problem, Shot* shot) const;
-  /// The lifter's frames of view v over the time of a shot.
-  [[nodiscard]] std::span<const LiftedFrame> FramesOfView(size_t v, const SequenceProblem& problem,
-                                                          const Shot& shot) const;
+  /// The lifter's vertical in view v over the time of a shot, and that camera's axis in the middle of it: in the camera's
+  /// frame, or in the view's own scene where it moves.
+  [[nodiscard]] std::optional<UpOfView> UpInOwnScene(size_t v, const SequenceProblem& problem, const Shot& shot) const;
   /// Joins the lifter's vertical with the picture's lines, for the focal length of `problem`, and with those of further
   /// views as they stand to the first.
   void JoinLines(const SequenceProblem& problem, Shot* shot) const;
@@ -76,6 +77,7 @@ class ClipGround : public ClipTerm {
   const KnownGround* known_;
   const PictureVertical* lines_;                    ///< null: none
   std::vector<const PictureVertical*> view_lines_;  ///< likewise, of each further view
+  std::vector<const std::vector<CameraPose>*> view_paths_;  ///< of each further view; null: it stands still
   double focal_log_sigma_ = 0;                      ///< of the focal length that the fit begins with; 0: known
   const std::vector<LiftedFrame>& lifted_;
   const LiftedLandmarks& landmarks_;
