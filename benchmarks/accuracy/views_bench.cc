@@ -90,6 +90,17 @@ KeypointSequence OtherClock(const KeypointSequence& given, double shift_s, int d
   return result;
 }
 
+/// The frames from this share of the clip on, for this share of it.
+KeypointSequence PartOf(const KeypointSequence& given, double begin, double length) {
+  KeypointSequence result = given;
+  const int first = static_cast<int>(std::lround(begin * given.num_frames()));
+  const int count = std::min(static_cast<int>(std::lround(length * given.num_frames())), given.num_frames() - first);
+  const auto from = given.points.begin() + static_cast<std::ptrdiff_t>(first) * given.num_points();
+  result.points.assign(from, from + static_cast<std::ptrdiff_t>(count) * given.num_points());
+  result.timestamps.assign(given.timestamps.begin() + first, given.timestamps.begin() + first + count);
+  return result;
+}
+
 double Median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
@@ -153,6 +164,8 @@ BenchRow Measure(const BenchArguments& arguments, const MultiViewClip& clip, con
   for (size_t v = 0; v < names.size(); ++v) {
     const KeypointSequence& detections = FindView(clip, names[v]).detections;
     seen.push_back(OtherClock(detections, v == 0 ? 0 : shift_s, v == 0 ? 0 : arguments.Integer("drop-every")));
+    const double overlap = std::stod(arguments.Text("overlap"));
+    if (overlap < 1) seen.back() = PartOf(seen.back(), v == 0 ? 0 : (1 - overlap) / (2 - overlap), 1 / (2 - overlap));
     seen.back().image_width = FindView(clip, names[v]).camera.width;
     seen.back().image_height = FindView(clip, names[v]).camera.height;
   }
@@ -366,6 +379,7 @@ int main(int argc, char** argv) {
                               {"shift-frames", "0"},
                               {"drop-every", "0"},
                               {"focal-ratio", "0"},
+                              {"overlap", "1"},
                               {"repeat", "1"},
                               {"synthetic", "0"},
                               {"seconds", "8"},

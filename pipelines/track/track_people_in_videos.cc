@@ -355,11 +355,7 @@ TrackPeopleReport TrackPeopleInVideos(const TrackPeopleInVideosRequest& request,
   }
   AddResults(request, videos, result, &report);
   clock.Begin("write");
-  for (const ViewReport& view : report.views) {
-    if (!view.doubt.empty()) {
-      callbacks.Message("view " + view.camera.name + " may show another motion, or other people: " + view.doubt);
-    }
-  }
+  WarnAboutViews(report.views, "other people", callbacks);
   WriteTracks(request.out, result.people, &report);
   report.outputs.push_back(FileInFolder(request, "rig.json"));
   WriteRig(report.outputs.back(), RigOf(report.views));

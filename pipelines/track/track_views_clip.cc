@@ -153,11 +153,7 @@ TrackReport TrackViewsClip(const TrackViewsRequest& request, const PipelineCallb
     if (!result.joint.track.world) result.joint.track.world = AssumedWorld(result.joint.track.joints);
     report.views = ReportOnViews(views, result);
   }
-  for (const ViewReport& view : report.views) {
-    if (!view.doubt.empty()) {
-      callbacks.Message("view " + view.camera.name + " may show another motion, or another person: " + view.doubt);
-    }
-  }
+  WarnAboutViews(report.views, "another person", callbacks);
   report.solve = std::move(joint);
   if (report.solve.IsUsable()) {
     report.outputs.push_back(RigFileOf(request));

@@ -63,6 +63,7 @@ ViewReport ReportOnView(const ViewSummary& found, const RigCamera& clock, double
   camera.translation_sigma_m = found.translation_sigma_m;
   camera.focal_log_sigma = found.focal_log_sigma;
   report.frames = found.frames;
+  if (!clock.HasClock()) report.repeat_s = found.repeat_s;
   report.reprojection_median_px = found.reprojection_median_px;
   return report;
 }
@@ -81,6 +82,19 @@ std::string DoubtAbout(const ViewReport& view, const ViewReport& first) {
                        " times those of the first view");
   }
   return "";
+}
+
+void WarnAboutViews(const std::vector<ViewReport>& views, const std::string& whom, const PipelineCallbacks& callbacks) {
+  for (const ViewReport& view : views) {
+    if (!view.doubt.empty()) {
+      callbacks.Message("view " + view.camera.name + " may show another motion, or " + whom + ": " + view.doubt);
+    }
+    if (std::isfinite(view.repeat_s)) {
+      callbacks.Message("view " + view.camera.name + ": the motion repeats itself, its clock may be " +
+                        Fixed(std::abs(view.repeat_s), 2) + (view.repeat_s > 0 ? " s later" : " s earlier") +
+                        "; a longer time in common, or --cameras with its clock, tells");
+    }
+  }
 }
 
 std::vector<RigCamera> RigOf(const std::vector<ViewReport>& views) {
@@ -143,6 +157,7 @@ nlohmann::ordered_json ToJson(const ViewReport& view) {
   json["offset_s"] = camera.offset_s;
   json["offset_frames"] = camera.offset_s * view.fps;
   json["offset_sigma_s"] = camera.offset_sigma_s;
+  if (std::isfinite(view.repeat_s)) json["repeat_s"] = view.repeat_s;
   json["rate"] = camera.rate;
   json["rate_sigma"] = camera.rate_sigma;
   json["reprojection_median_px"] = view.reprojection_median_px;

@@ -2,10 +2,12 @@
 /// Report of one camera of several: as text for a reader, and as JSON for a program.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "geometry/base/callbacks.h"
 #include "geometry/scene/rig.h"
 #include "tracking/problem/track_summary.h"
 
@@ -19,6 +21,7 @@ struct ViewReport {
   std::string left_out;    ///< the reason if the view was not used, in which case only the name is set of `camera`
   std::string doubt;       ///< the reason to doubt that a view that was used shows the first one's motion; empty: none
   int frames = 0;          ///< of the first view's clip that it shows, too
+  double repeat_s = std::numeric_limits<double>::quiet_NaN();  ///< as of ViewSummary
   double fps = 0;          ///< median
   double reprojection_median_px = 0;
 };
@@ -29,6 +32,9 @@ ViewReport ReportOnFirstView(const TrackSequenceSummary& joint, const Camera& ca
 ViewReport ReportOnView(const ViewSummary& found, const RigCamera& clock, double middle_s);
 /// The reason to doubt that the view shows the first one's motion; empty if there is none.
 std::string DoubtAbout(const ViewReport& view, const ViewReport& first);
+
+/// Warns of views that may show something else, `whom` as "another person", and of clocks that may be others.
+void WarnAboutViews(const std::vector<ViewReport>& views, const std::string& whom, const PipelineCallbacks& callbacks);
 
 /// Cameras and clocks of the views that were used.
 std::vector<RigCamera> RigOf(const std::vector<ViewReport>& views);

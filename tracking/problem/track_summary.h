@@ -101,6 +101,8 @@ struct ViewSummary {
   double offset_s = 0, rate = 0;
   double rotation_sigma_rad = 0, translation_sigma_m = 0;  ///< one axis
   double focal_log_sigma = 0, offset_sigma_s = 0, rate_sigma = 0;
+  /// Offset less offset_s with which the motions agree as well, since the motion repeats itself; NaN: none.
+  double repeat_s = std::numeric_limits<double>::quiet_NaN();
   int frames = 0;  ///< of the first view's clip that it shows, too
   double reprojection_median_px = 0;
 };

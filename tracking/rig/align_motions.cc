@@ -22,7 +22,8 @@ constexpr double kRate = 15;        // moments a second of the grid
 constexpr int kMaxMoments = 3000;   // of the longer clip; a longer one has a coarser grid
 constexpr double kFineRate = 240;   // offsets a second of the refinement
 constexpr double kMaxStep_s = 0.3;  // that is interpolated
-constexpr double kMinOther_m = 0.15;
+constexpr double kMinOther_m = 0.15, kMinDistance_m = 0.03;
+constexpr double kMinRepeat_s = 0.5, kRepeatRatio = 1.1;
 /// Overlap of full evidence: this time, or this share of the shorter clip if that is less.
 constexpr double kTogether_s = 3, kTogetherShare = 0.8;
 /// Errors of a monocular track last for a third of a second, and its points move together as six limbs do.
@@ -182,16 +183,21 @@ MotionAlignment AlignMotions(const ViewMotion& a, const ViewMotion& b) {
     return result;
   }
   const double other = std::max(MedianOf(squared), kMinOther_m * kMinOther_m);
-  const auto score = [&](const LagFit& fit) { return fit.moments * (other - fit.squared); };
+  const auto likelihood = [&](const LagFit& fit) {
+    return fit.moments * std::log(other / std::max(fit.squared, kMinDistance_m * kMinDistance_m));
+  };
   size_t best = 0;
   for (size_t i = 1; i < fits.size(); ++i) {
-    if (score(fits[i]) > score(fits[best])) best = i;
+    if (likelihood(fits[i]) > likelihood(fits[best])) best = i;
   }
   result.other_distance_m = std::sqrt(other);
   result.distance_m = std::sqrt(fits[best].squared);
-  result.score = score(fits[best]) * step;
+  result.score = fits[best].moments * (other - fits[best].squared) * step;
   const double together = fits[best].moments * step, enough = std::min(kTogether_s, kTogetherShare * shorter * step);
-  const double limit = kMaxMotionDistance_m * std::min(1.0, together / enough);
+  const auto limit_of = [&](const LagFit& fit) {
+    return kMaxMotionDistance_m * std::min(1.0, fit.moments * step / enough);
+  };
+  const double limit = limit_of(fits[best]);
   if (result.distance_m > limit) {
     result.why =
         Concatenate("the motions differ: ", std::lround(1000 * result.distance_m), " mm where they agree best, for ",
@@ -210,6 +216,16 @@ MotionAlignment AlignMotions(const ViewMotion& a, const ViewMotion& b) {
   int lowest = fine;
   for (int i = 0; i < static_cast<int>(near.size()); ++i) {
     if (near[i].moments >= needed && near[i].squared < near[lowest].squared) lowest = i;
+  }
+  double repeat_squared = kRepeatRatio * kRepeatRatio * fits[best].squared;
+  for (size_t i = 0; i < fits.size(); ++i) {
+    const double beside_s = (lags[i] - lags[best]) * step;
+    if (std::abs(beside_s) < kMinRepeat_s || fits[i].squared > repeat_squared ||
+        std::sqrt(fits[i].squared) > limit_of(fits[i])) {
+      continue;
+    }
+    repeat_squared = fits[i].squared;
+    result.repeat_s = beside_s;
   }
   result.found = true;
   result.offset_s = coarse + (lowest - fine) / kFineRate;

@@ -298,6 +298,7 @@ TrackViewsResult FitViewsTogether(const std::vector<ObservedView>& views, std::v
   size_t next = 0;
   for (ViewSummary& view : result.joint.summary.views) {
     const PlacedView& at = placed[index[next]];
+    if (!others[next].clock_known) view.repeat_s = summary.alignment[index[next]].repeat_s;
     if (!others[next++].clock_known && at.offset_sigma_s > kUntoldClock_s) {
       view.offset_sigma_s = std::max(view.offset_sigma_s, at.offset_sigma_s);
     }
