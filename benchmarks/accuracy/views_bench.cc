@@ -3,12 +3,14 @@
 /// those of each camera alone.
 ///
 ///   bodyloom_bench_views --data AISTPP [--sequences A,B] [--rigs pairs|c01+c03,c01+c04+c07]
-///                        [--known none,intrinsics,cameras] [--shift-frames 0] [--drop-every 0] [--repeat 1]
-///                        [--threads 2] [--solver chain+ceres] [--json F]
+///                        [--known none,intrinsics,cameras] [--shift-frames 0] [--drop-every 0] [--overlap 1]
+///                        [--focal-ratio 0] [--repeat 1] [--threads 2] [--solver chain+ceres] [--json F]
 ///
 /// `pairs`: all pairs of the nine cameras. --known: nothing; the intrinsics; intrinsics and poses. Before they are
 /// tracked, every view's clock but the first one's is moved by --shift-frames, with every nth of its frames left out
-/// (--drop-every). --focal-ratio is the known logarithmic standard deviation of the ratio of two focal lengths. With --repeat everything is tracked several times and times are medians; stages go to stderr.
+/// (--drop-every). --focal-ratio: σ of the logarithm of the ratio of two focal lengths, where it is known. --overlap: the
+/// share of each clip that the others show, too; the first gives up its end, the others their beginning. With --repeat
+/// everything is tracked several times and times are medians; stages go to stderr.
 /// Columns: `axes_deg`, the angle between the first two cameras' axes (folded to 90°: opposite cameras see the same
 /// outline); PA-MPJPE jointly, of the first view alone and the mean of all alone; the room of the joint track; error of
 /// the rotation from the first view to the others, of the focal lengths and of the clocks (mean over views); seconds of
