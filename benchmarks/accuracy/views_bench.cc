@@ -8,14 +8,14 @@
 ///
 /// `pairs`: all pairs of the nine cameras. --known: nothing; the intrinsics; intrinsics and poses. Before they are
 /// tracked, every view's clock but the first one's is moved by --shift-frames, with every nth of its frames left out
-/// (--drop-every). --focal-ratio: σ of the logarithm of the ratio of two focal lengths, where it is known. --overlap: the
-/// share of each clip that the others show, too; the first gives up its end, the others their beginning. With --repeat
-/// everything is tracked several times and times are medians; stages go to stderr.
-/// Columns: `axes_deg`, the angle between the first two cameras' axes (folded to 90°: opposite cameras see the same
-/// outline); PA-MPJPE jointly, of the first view alone and the mean of all alone; the room of the joint track; error of
-/// the rotation from the first view to the others, of the focal lengths and of the clocks (mean over views); seconds of
-/// an ordinary track of the first view by itself and of several views, by the clock and of the processor (its threads
-/// in sum, whoever else uses it), with those of the fits alone; the process's peak memory so far.
+/// (--drop-every). --focal-ratio: σ of the logarithm of the ratio of two focal lengths, where it is known. --overlap:
+/// the share of each clip that the others show, too; the first gives up its end, the others their beginning. With
+/// --repeat everything is tracked several times and times are medians; stages go to stderr. Columns: `axes_deg`, the
+/// angle between the first two cameras' axes (folded to 90°: opposite cameras see the same outline); PA-MPJPE jointly,
+/// of the first view alone and the mean of all alone; the room of the joint track; error of the rotation from the first
+/// view to the others, of the focal lengths and of the clocks (mean over views); seconds of an ordinary track of the
+/// first view by itself and of several views, by the clock and of the processor (its threads in sum, whoever else uses
+/// it), with those of the fits alone; the process's peak memory so far.
 ///
 ///   bodyloom_bench_views --synthetic 20 [--rigs 2,3,4,6,8,opposite,still,drift] [--seconds 8] [--noise detector|white]
 ///                        [--bias-mm 25] [--ground on|off] [--known none,intrinsics] [--threads 2]
@@ -222,6 +222,9 @@ BenchRow Measure(const BenchArguments& arguments, const MultiViewClip& clip, con
   if (!result.joint.summary.IsUsable()) {
     std::fprintf(stderr, "%s %s: %s\n", row.labels[0].c_str(), rig.c_str(), result.joint.summary.message.c_str());
     return row;
+  }
+  for (const ViewSummary& view : result.joint.summary.views) {
+    if (std::isfinite(view.repeat_s)) std::fprintf(stderr, "  repeats after %.2f s", view.repeat_s);
   }
   const Evaluation evaluation = EvaluateAist(result.joint.track, clip, names[0]);
   for (const char* column : {"pa_mpjpe_mm", "room_g_mpjpe_mm", "room_wa_mpjpe_mm", "tilt_deg"}) {

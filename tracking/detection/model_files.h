@@ -18,8 +18,8 @@ inline constexpr const char* kPoseLandmarkHeavyFile = "pose_landmark_heavy.tflit
 /// The folders that are searched, in this order. `folder` is the user's choice and `variable` the value of the
 /// environment's BODYLOOM_MODELS: the first of the two that is not empty is the only folder. Otherwise, for the program
 /// at the path `program`: ../share/bodyloom/models from its folder (installed), and ../../models when its folder lies
-/// in that of a build (build/PRESET/apps → build/models). Last comes models/ beside the shared library `module` that this
-/// code is part of, a Python module in a wheel; there is none where it is empty.
+/// in that of a build (build/PRESET/apps → build/models). Last comes models/ beside the shared library `module` that
+/// this code is part of, a Python module in a wheel; there is none where it is empty.
 std::vector<std::string> ModelFolders(const std::string& folder, const std::string& variable,
                                       const std::string& program, const std::string& module = "");
 

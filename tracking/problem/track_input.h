@@ -29,7 +29,7 @@ struct ViewInput {
   /// that of the prior).
   Camera camera = {.fx = 0, .fy = 0};
   std::optional<FocalPrior> focal_prior;  ///< without it FocalPrior::ForImage()
-  /// Where the focal length is not known: σ of the logarithm of its ratio to that of the first view, both as shares of
+  /// Of a focal length that is not known: σ of the logarithm of its ratio to that of the first view, both as shares of
   /// the image's longer side, for cameras of one kind; it takes the prior's place. 0: nothing is known of the ratio.
   double focal_ratio_log_sigma = 0;
   /// From the first view's camera frame; from the scene if that camera moves; to this view's own scene if this moves.

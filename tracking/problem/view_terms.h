@@ -12,8 +12,8 @@
 /// So derivatives by the root's rotation and by the translation in the view give those by the camera's pose.
 ///
 /// A view that moves has a path: the poses P, p of its camera at each moment in a scene of its own, in metres.
-/// camera_from_scene (Q, q) then leads from the scene to that one, and above R = P Q and t = P q + p: ω is the increment
-/// of Q, and the last term of d trans' is P dq.
+/// camera_from_scene (Q, q) then leads from the scene to that one, and above R = P Q and t = P q + p: ω is the
+/// increment of Q, and the last term of d trans' is P dq.
 ///
 /// Clock: the terms were observed where the view's clock shows a certain time. When it is moved by s seconds, an
 /// observed pixel y with velocity ẏ is at y + s ẏ (LandmarkObservation): s = offset_s + rate τ − sampled_s, with τ the

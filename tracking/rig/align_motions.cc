@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "geometry/base/check.h"
@@ -217,14 +218,12 @@ MotionAlignment AlignMotions(const ViewMotion& a, const ViewMotion& b) {
   for (int i = 0; i < static_cast<int>(near.size()); ++i) {
     if (near[i].moments >= needed && near[i].squared < near[lowest].squared) lowest = i;
   }
-  double repeat_squared = kRepeatRatio * kRepeatRatio * fits[best].squared;
+  double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < fits.size(); ++i) {
-    const double beside_s = (lags[i] - lags[best]) * step;
-    if (std::abs(beside_s) < kMinRepeat_s || fits[i].squared > repeat_squared ||
-        std::sqrt(fits[i].squared) > limit_of(fits[i])) {
-      continue;
-    }
-    repeat_squared = fits[i].squared;
+    const double beside_s = (lags[i] - lags[best]) * step, distance = std::sqrt(fits[i].squared);
+    const double ratio = distance <= limit_of(fits[i]) ? kRepeatRatio : 1;
+    if (std::abs(beside_s) < kMinRepeat_s || distance > ratio * result.distance_m || distance >= least) continue;
+    least = distance;
     result.repeat_s = beside_s;
   }
   result.found = true;

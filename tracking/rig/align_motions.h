@@ -5,12 +5,12 @@
 /// With a_i and b_i the person's points about their centre at the times t_i of clock a and t_i + τ of clock b, on a
 /// common grid, the rotation R(τ) and the mean squared distance d(τ) are
 ///   d(τ) = min over R of  1/(n K) Σ_i Σ_k ‖R a_ik − b_ik‖²     (n moments that both show, K points)
-/// and the offset maximises n(τ) log(d₀ / max(d(τ), d₁)), the logarithm of the likelihood ratio of Gaussian errors whose
-/// size is what is left of the motion: long overlaps that agree are preferred to short ones, but a short one that agrees
-/// well to a long one that hardly does. d₀, the squared distance of poses that have nothing to do with each other, is
-/// the median of d over all offsets, and at least (15 cm)²; d₁ = (3 cm)², for no two tracks agree better by more than
-/// chance. It is refined to a 240th of a second. The translation is the median of c_b − R c_a, with c the centres. The
-/// body has the same size in both, so the metre is the body's.
+/// and the offset maximises n(τ) log(d₀ / max(d(τ), d₁)), the logarithm of the likelihood ratio of Gaussian errors
+/// whose size is what is left of the motion: long overlaps that agree are preferred to short ones, but a short one that
+/// agrees well to a long one that hardly does. d₀, the squared distance of poses that have nothing to do with each
+/// other, is the median of d over all offsets, and at least (15 cm)²; d₁ = (3 cm)², for no two tracks agree better by
+/// more than chance. It is refined to a 240th of a second. The translation is the median of c_b − R c_a, with c the
+/// centres. The body has the same size in both, so the metre is the body's.
 #pragma once
 
 #include <limits>
@@ -40,8 +40,8 @@ struct MotionAlignment {
   double distance_m = 0;        ///< √d at the offset
   double other_distance_m = 0;  ///< √d₀
   double overlap_s = 0;         ///< time that both show
-  /// Where the motion repeats itself: offset less offset_s of the other moment, more than half a second away, at which
-  /// the motions agree best, if they do so no worse than by a tenth of the distance; NaN: there is none.
+  /// Of a motion that repeats itself: offset less offset_s of the other moment, more than half a second away, at which
+  /// the motions agree best; there they must agree as well, or for three seconds within a tenth as well. NaN: none.
   double repeat_s = std::numeric_limits<double>::quiet_NaN();
   double score = 0;             ///< n (d₀ − d) in m² s
 };

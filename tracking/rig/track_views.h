@@ -52,7 +52,8 @@ struct TrackViewsSummary {
 };
 
 struct TrackViewsResult {
-  TrackSequenceResult joint;  ///< in the first view's camera frame, or its scene; summary.views are the others that were used
+  /// In the first view's camera frame, or its scene; summary.views are the others that were used.
+  TrackSequenceResult joint;
   std::vector<TrackSequenceResult> alone;
   TrackViewsSummary summary;
 };

@@ -30,7 +30,7 @@ struct TwoViews {
   std::vector<ViewState> truth;
 };
 
-/// Where a camera that moves is in frame t, from its own scene.
+/// Pose of a camera that moves in frame t, from its own scene.
 CameraPose PoseInFrame(int t) {
   return {RotationFromAxisAngle({0.02 * t, -0.05 * t, 0.3 + 0.01 * t}), Vector3d(0.05 * t - 0.2, 0.1, 0.03 * t)};
 }

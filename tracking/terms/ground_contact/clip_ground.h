@@ -53,8 +53,8 @@ class ClipGround : public ClipTerm {
   };
   /// The lifter's vertical in all views, or the known one, joined with the lines.
   void FindVertical(const SequenceProblem& problem, Shot* shot) const;
-  /// The lifter's vertical in view v over the time of a shot, and that camera's axis in the middle of it: in the camera's
-  /// frame, or in the view's own scene where it moves.
+  /// The lifter's vertical in view v over the time of a shot, and that camera's axis in the middle of it: in the
+  /// camera's frame, or in the view's own scene where it moves.
   [[nodiscard]] std::optional<UpOfView> UpInOwnScene(size_t v, const SequenceProblem& problem, const Shot& shot) const;
   /// Joins the lifter's vertical with the picture's lines, for the focal length of `problem`, and with those of further
   /// views as they stand to the first.
