@@ -233,10 +233,11 @@ void AddOtherTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   app.add_option("--video-offset", c.video_offset, "video frame that belongs to the detections' frame number 0")
       ->group(kKnown)
       ->capture_default_str();
-  app.add_option(
-         "--init", c.init,
-         "poses of another system to start from and stay near: wham_output.pkl, GVHMR's hmr4d_results.pt, PHALP's "
-         "or 4D-Humans' .pkl, vibe_output.pkl, SAM 3D Body's .npz (or a folder of them), or a track .npz")
+  app.add_option("--init", c.init,
+                 "poses of another system to start from and stay near: wham_output.pkl, vibe_output.pkl, PHALP's, "
+                 "4D-Humans' or "
+                 "PromptHMR's .pkl, GVHMR's, GEM's or GEM-X's .pt, SAM 3D Body's .npz or .json (or a folder of them), "
+                 "SAM3DBody-cpp's .csv, or a track .npz")
       ->group(kKnown)
       ->type_name("FILE");
   AddLearnedOptions(app, request);

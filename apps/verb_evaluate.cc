@@ -17,6 +17,8 @@ constexpr const char* kEvaluateFooter =
     "What --truth may be, and the protocol it selects:\n"
     "  a track .npz (bodyloom synth writes truth.npz)   known-truth: vertices, joints, angles, camera\n"
     "  a sequence of EMDB or 3DPW, .pkl                 emdb, 3dpw: the same, and errors in the world\n"
+    "  a sequence's folder of RICH (00017/004.pkl)      rich: the same\n"
+    "  Human3.6M's *_joint_3d.json, data_3d_h36m.npz    h36m: LSP's 14 joints (*_smpl_param.json: h36m-smpl)\n"
     "  part labels .npz (uint8 labels)                  part-labels: overlap of the rendered body with each part\n"
     "  an AIST++ folder (keypoints2d/, keypoints3d/)    aist-held-out: 3D joints, and the cameras that were not "
     "fitted\n"
@@ -51,15 +53,19 @@ void AddEvaluateVerb(CLI::App& app, Action* action) {
           "instead of --truth: what a calibrated camera saw of the person, VIEW[:PERSON]=FILE, once a camera")
       ->type_name("TEXT");
   verb->add_option("--body", c.body, "body that both were made with (default: the built-in body)")->type_name("FILE");
-  verb->add_option("--true-body", c.true_body, "EMDB, 3DPW: the true motion's body, SMPL of its sex (default: --body)")
+  verb->add_option("--true-body", c.true_body, "EMDB, 3DPW, RICH: the true motion's body, of its sex (default: --body)")
       ->type_name("FILE");
-  verb->add_option("--true-person", c.true_person, "3DPW: which of the file's people")
+  verb->add_option("--true-person", c.true_person, "3DPW, RICH: which of the people")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  verb->add_option("--joint-regressor", c.joint_regressor, "J_regressor_h36m.npy: Human3.6M's joints of the vertices")
+      ->type_name("FILE");
   verb->add_option("--json", c.json, "also write the numbers as JSON")->type_name("FILE");
-  verb->add_option("--cameras", c.cameras, "AIST++: camera folder (default: TRUTH/cameras); --seen: the calibration")
+  verb->add_option("--cameras", c.cameras,
+                   "AIST++: camera folder (default: TRUTH/cameras); RICH, Human3.6M, --seen: the calibration")
       ->type_name("PATH");
-  verb->add_option("--sequence", c.sequence, "AIST++: name of the clip")->type_name("NAME");
+  verb->add_option("--sequence", c.sequence, "AIST++: name of the clip; Human3.6M: 2/1, 'S9/Directions 1'")
+      ->type_name("NAME");
   verb->add_option("--rig", c.rig, "cameras of a true track of several views (rig.json)")->type_name("FILE");
   verb->add_flag("--equal-clocks", c.equal_clocks, "cameras of --rig without a known clock ran on the first one's");
   verb->add_option("--view", c.view, "camera that the track was fitted to (default: c01, cam_01; of a rig its first)")

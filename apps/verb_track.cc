@@ -28,7 +28,7 @@ constexpr const char* kTrackFooter =
     "  a body of your own, and the numbers for a program:\n"
     "    bodyloom track --detections coco.json --image-size 1920x1080 --body SMPL_NEUTRAL.pkl --out t.npz --json "
     "t.json\n"
-    "  poses of an image network (WHAM, GVHMR, PHALP, VIBE, SAM 3D Body) to start from:\n"
+    "  poses of an image network (WHAM, GVHMR, GEM, PromptHMR, PHALP, VIBE, SAM 3D Body) to start from:\n"
     "    bodyloom track --video clip.mp4 --init wham_output.pkl --out track.npz --json track.json\n"
     "  what would be done, and why not the rest:\n"
     "    bodyloom track --detections coco.json --image-size 1920x1080 --plan\n\n";

@@ -16,6 +16,7 @@
 #include "geometry/base/parallel.h"
 #include "pipelines/detect/detect_people.h"
 #include "pipelines/detect/find_turn.h"
+#include "pipelines/detect/upright_people.h"
 #include "pipelines/files.h"
 #include "pipelines/track/track_people_clip.h"
 #include "pipelines/track/track_people_in_videos.h"
@@ -110,6 +111,7 @@ std::vector<std::shared_ptr<KeypointSequence>> Detect(DetectPeopleRequest reques
   return PythonCallbacks(progress).Run([&](const PipelineCallbacks& callbacks) {
     if (find_turn) request.span.turn_deg = FindTurn(request, callbacks);
     const DetectedClip clip = DetectPeople(request, callbacks);
+    SayAdviceOnTurn(request.video, clip.people, callbacks);
     std::vector<std::shared_ptr<KeypointSequence>> people;
     for (const PersonTrack& person : LinkPeople(clip.people)) {
       people.push_back(std::make_shared<KeypointSequence>(KeypointsOf(clip.people, person)));

@@ -12,12 +12,9 @@
 #include "data_tools/formats/printable.h"
 #include "geometry/base/check.h"
 #include "geometry/math/rotation.h"
-#include "geometry/scene/track_edits.h"
 
 namespace bodyloom {
 namespace {
-
-constexpr double kFps = 30;
 
 const PickleValue& RequireDict(const PickleValue& file, const std::string& key, const std::string& where) {
   const PickleValue* value = file.Find(key);
@@ -64,7 +61,7 @@ void SetMotion(const RowMatrixXd& poses, const RowMatrixXd& trans, const RowMatr
   motion.poses = poses;
   motion.trans = trans;
   motion.betas = Eigen::Map<const Eigen::VectorXd>(betas.data(), betas.size());
-  for (Eigen::Index t = 0; t < poses.rows(); ++t) motion.timestamps.push_back(double(t) / kFps);
+  for (Eigen::Index t = 0; t < poses.rows(); ++t) motion.timestamps.push_back(double(t) / VideoTruth().fps);
   track->frame_status.assign(size_t(poses.rows()), FrameStatus::kTracked);
   track->weak_camera.resize(0, 3);
 }
@@ -128,6 +125,7 @@ int WholeNumber(const PickleValue& file, const std::string& key, const std::stri
 VideoTruth EmdbTruth(const PickleValue& file, const std::string& where) {
   VideoTruth truth;
   truth.dataset = "EMDB";
+  truth.protocol = "emdb";
   truth.sequence = TextOf(file.Find("name"));
   truth.gender = GenderOf(file.Find("gender"));
   const PickleValue& smpl = RequireDict(file, "smpl", where);
@@ -147,6 +145,7 @@ VideoTruth EmdbTruth(const PickleValue& file, const std::string& where) {
 VideoTruth ThreeDpwTruth(const PickleValue& file, int person, const std::string& where) {
   VideoTruth truth;
   truth.dataset = "3DPW";
+  truth.protocol = "3dpw";
   truth.sequence = TextOf(file.Find("sequence"));
   const PickleValue* genders = file.Find("genders");
   const bool has_gender = genders != nullptr && size_t(person) < genders->items.size();
@@ -198,17 +197,18 @@ VideoTruth VideoTruthFromPickle(const PickleValue& file, int person, const std::
   return truth;
 }
 
-Track FramesNearTimes(const Track& truth, const std::vector<double>& times_s, const std::string& where) {
+std::vector<int> FramesNearTimes(int num_frames, double fps, const std::vector<double>& times_s,
+                                 const std::string& where) {
   std::vector<int> frames;
   for (const double time : times_s) {
-    const double frame = time * kFps;
-    if (!(std::abs(frame) < 1e9) || std::lround(frame) < 0 || std::lround(frame) >= truth.num_frames()) {
-      throw std::runtime_error(Concatenate(where, ": ", truth.num_frames(), " frames at ", kFps,
-                                           " a second, the track has one at ", time, " s"));
+    const double frame = time * fps;
+    if (!(std::abs(frame) < 1e9) || std::lround(frame) < 0 || std::lround(frame) >= num_frames) {
+      throw std::runtime_error(
+          Concatenate(where, ": ", num_frames, " frames at ", fps, " a second, the track has one at ", time, " s"));
     }
     frames.push_back(int(std::lround(frame)));
   }
-  return SelectFrames(truth, frames);
+  return frames;
 }
 
 }  // namespace bodyloom

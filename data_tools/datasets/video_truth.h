@@ -21,10 +21,13 @@
 namespace bodyloom {
 
 struct VideoTruth {
-  std::string dataset;   ///< "EMDB" or "3DPW"
+  std::string dataset;   ///< "EMDB" or "3DPW"; of rich_truth.h and human36m.h "RICH", "Human3.6M"
+  std::string protocol;  ///< the evaluation's: "emdb", "3dpw", "rich", "h36m-smpl"
   std::string sequence;  ///< the file's own name of it
-  std::string gender;    ///< of the SMPL body: "female", "male" or "neutral"
+  std::string gender;    ///< of the body: "female", "male" or "neutral"; empty: not told
+  std::string subject;   ///< who it is, where the data set numbers them
   int num_people = 1;    ///< in the file
+  double fps = 30;       ///< of the frames, the first at time 0
   /// Of SMPL's body (72 columns), without joints, in the data set's world, which is the scene of its moving camera.
   /// Frames that the data set calls invalid are lost.
   Track track;
@@ -34,8 +37,9 @@ struct VideoTruth {
 /// holds and what was expected, also when there are fewer people.
 VideoTruth VideoTruthFromPickle(const PickleValue& file, int person, const std::string& where);
 
-/// The frames of a track of 30 frames a second from time 0 that are nearest to these times, seconds. Throws
-/// std::runtime_error naming `where` when one of them is before the first or after the last.
-Track FramesNearTimes(const Track& truth, const std::vector<double>& times_s, const std::string& where);
+/// The frames of `num_frames` at `fps` from time 0 that are nearest to these times, seconds. Throws std::runtime_error
+/// naming `where` when one of them is before the first or after the last.
+std::vector<int> FramesNearTimes(int num_frames, double fps, const std::vector<double>& times_s,
+                                 const std::string& where);
 
 }  // namespace bodyloom

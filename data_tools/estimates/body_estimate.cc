@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/estimates/body_estimate.h"
 
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "geometry/base/check.h"
 #include "geometry/math/rotation.h"
@@ -64,7 +68,89 @@ std::optional<SeenPelvis> PelvisAmong(const KeypointSequence& keypoints, int t, 
   return middle;
 }
 
+/// Names of PersonEstimate::landmarks.
+std::vector<std::string> EstimateLandmarkNames() {
+  std::vector<std::string> names = CocoNames();
+  names.insert(names.end(), {"left_big_toe", "right_big_toe", "left_heel", "right_heel"});
+  return names;
+}
+
+/// A frame's skeleton moved onto the rays of the detections.
+struct SkeletonOnRays {
+  Vector3d moved;
+  double off_m = 0;
+};
+
+std::optional<SkeletonOnRays> OnRays(const MatrixX3d& landmarks, const KeypointSequence& keypoints, int t,
+                                     const std::vector<int>& columns, const Camera& camera) {
+  constexpr float kSeen = 0.3F;
+  constexpr size_t kFewest = 5;
+  std::vector<std::pair<Eigen::Index, Vector2d>> rays;
+  for (size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k] < 0 || !(keypoints.at(t, columns[k]).confidence >= kSeen)) continue;
+    const Keypoint& point = keypoints.at(t, columns[k]);
+    const Vector2d ray = camera.Unproject({point.x, point.y});
+    if (ray.allFinite()) rays.emplace_back(Eigen::Index(k), ray);
+  }
+  if (rays.size() < kFewest) return std::nullopt;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * Eigen::Index(rays.size()), 3);
+  Eigen::VectorXd b(A.rows());
+  for (Eigen::Index i = 0; i < Eigen::Index(rays.size()); ++i) {
+    const auto& [k, ray] = rays[size_t(i)];
+    A.block<2, 2>(2 * i, 0).setIdentity();
+    A.block<2, 1>(2 * i, 2) = -ray;
+    b.segment<2>(2 * i) = landmarks(k, 2) * ray - landmarks.row(k).head<2>().transpose();
+  }
+  const Eigen::VectorXd t_xyz = A.colPivHouseholderQr().solve(b);
+  if (!t_xyz.allFinite() || !(t_xyz[2] + landmarks.col(2).minCoeff() > Camera::kMinDepth)) return std::nullopt;
+  return SkeletonOnRays{t_xyz, (A * t_xyz - b).norm() / std::sqrt(double(rays.size()))};
+}
+
 }  // namespace
+
+void PlaceByDetections(const KeypointSequence& keypoints, const Camera& camera, const std::string& where,
+                       BodyEstimate* estimate) {
+  BODYLOOM_CHECK(camera.model == CameraModel::kPinhole, "landmarks can be placed in a pinhole camera only");
+  constexpr double kMaxOff_m = 0.2;
+  std::vector<int> columns;
+  for (const std::string& name : EstimateLandmarkNames()) {
+    const auto found = std::find(keypoints.names.begin(), keypoints.names.end(), name);
+    columns.push_back(found == keypoints.names.end() ? -1 : int(found - keypoints.names.begin()));
+  }
+  std::map<int, std::pair<double, PersonEstimate>> nearest;  // by frame; of one frame each
+  for (const PersonEstimate& person : estimate->people) {
+    for (size_t i = 0; i < person.frames.size(); ++i) {
+      const int t = person.frames[i];
+      if (t >= keypoints.num_frames()) continue;
+      const std::optional<SkeletonOnRays> placed = OnRays(person.landmarks[i], keypoints, t, columns, camera);
+      if (!placed || placed->off_m > kMaxOff_m) continue;
+      const auto known = nearest.find(t);
+      if (known != nearest.end() && known->second.first <= placed->off_m) continue;
+      PersonEstimate one;
+      one.trans = placed->moved.transpose();
+      one.landmarks = {person.landmarks[i]};
+      nearest[t] = {placed->off_m, one};
+    }
+  }
+  if (nearest.empty()) {
+    ThrowFileError(where, estimate->system +
+                              ": in no frame anybody stands as the detections do; are both of the same "
+                              "video, frame for frame?");
+  }
+  PersonEstimate person;
+  person.name = "0";
+  const auto n = static_cast<Eigen::Index>(nearest.size());
+  person.trans.resize(n, 3);
+  person.poses.resize(n, 0);
+  for (const auto& [t, found] : nearest) {
+    person.trans.row(Eigen::Index(person.frames.size())) = found.second.trans.row(0);
+    person.frames.push_back(t);
+    person.landmarks.push_back(found.second.landmarks[0]);
+  }
+  person.cameras.assign(person.frames.size(), camera);
+  estimate->people = {person};
+  estimate->has_places = true;
+}
 
 std::optional<PelvisInImage> PelvisOf(const PersonEstimate& person, size_t i, const Vector3d& rest_pelvis) {
   const Camera& camera = person.cameras[i];

@@ -43,6 +43,9 @@ struct BodyEstimate {
   int num_frames = 0;                  ///< of the video, if entry i is frame i; 0: entries have their own frame numbers
   std::vector<PersonEstimate> people;  ///< at least one, each of at least one frame; by falling size and time in view
   bool has_landmarks = false;          ///< points in place of poses; rest_pelvis is 0 and the mid-hip is the pelvis
+  /// False for landmarks whose place was not written, nor who they are from frame to frame: trans and cameras hold
+  /// nothing until PlaceByDetections().
+  bool has_places = true;
 };
 
 /// Image evidence of a body: pixel of its pelvis, its size there, and the line of sight.
@@ -66,6 +69,14 @@ Motion EstimateInCamera(const PersonEstimate& person, const Camera& camera, int 
 
 /// The same for landmarks: T of 21×3 in `camera`'s frame, without rows where the person is missing.
 std::vector<MatrixX3d> LandmarksInCamera(const PersonEstimate& person, const Camera& camera, int num_frames);
+
+/// Places landmarks without a place (BodyEstimate::has_places) by the detections of one person, seen with `camera` (a
+/// pinhole). In each frame a skeleton L is moved by the t that minimises Σ_k ‖(L_k + t).xy − z r_k‖², over the
+/// landmarks detected with a confidence of at least 0.3, r_k their rays (x/z, y/z) and z the depth of L_k + t. Of
+/// several skeletons the one is kept whose landmarks lie nearest to their rays, root mean square, if that is within 0.2
+/// m; the person of these is the only one left. Throws std::runtime_error beginning with `where` if there is none.
+void PlaceByDetections(const KeypointSequence& keypoints, const Camera& camera, const std::string& where,
+                       BodyEstimate* estimate);
 
 /// Index of the person who matches these landmarks best: the highest Σ over frames of max(0, 1 − d/reach), with d the
 /// distance from the pelvis to the mid-hip (reach 0.35 m at the person's own size) or, where a hip is missing, to the

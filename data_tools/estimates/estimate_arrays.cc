@@ -2,6 +2,7 @@
 #include "data_tools/estimates/estimate_arrays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -42,6 +43,20 @@ void SortFrames(const std::string& where, PersonEstimate* person) {
     }
   }
   *person = std::move(sorted);
+}
+
+void AppendNumbers(const PickleValue& value, const std::string& place, const std::string& key,
+                   std::vector<double>* numbers) {
+  if (value.kind == PickleValue::Kind::kArray && value.array.is_number()) {
+    const std::vector<double> of_array = value.array.ToDoubles();
+    numbers->insert(numbers->end(), of_array.begin(), of_array.end());
+  } else if (value.kind == PickleValue::Kind::kInt || value.kind == PickleValue::Kind::kFloat) {
+    numbers->push_back(value.kind == PickleValue::Kind::kInt ? static_cast<double>(value.integer) : value.real);
+  } else if (value.kind == PickleValue::Kind::kList || value.kind == PickleValue::Kind::kTuple) {
+    for (const PicklePtr& item : value.items) AppendNumbers(*item, place, key, numbers);
+  } else {
+    ThrowFileError(place, key, "expected numbers");
+  }
 }
 
 }  // namespace
@@ -100,6 +115,56 @@ Camera CentredCamera(int width, int height, double focal_px) {
   camera.cx = 0.5 * width;
   camera.cy = 0.5 * height;
   return camera;
+}
+
+Camera CameraFromK(const Eigen::Ref<const Eigen::RowVectorXd>& k, const std::string& where, const std::string& key) {
+  if (!(k[0] > 0) || !(k[4] > 0) || k[8] != 1 || k[1] != 0 || k[3] != 0) {
+    ThrowFileError(where, key, "expected [fx 0 cx; 0 fy cy; 0 0 1]");
+  }
+  Camera camera;
+  camera.fx = k[0];
+  camera.fy = k[4];
+  camera.cx = k[2];
+  camera.cy = k[5];
+  // The principal point is the middle of the image.
+  camera.width = static_cast<int>(std::lround(std::min(2 * std::abs(k[2]), 1e6)));
+  camera.height = static_cast<int>(std::lround(std::min(2 * std::abs(k[5]), 1e6)));
+  return camera;
+}
+
+const NdArray& RequireTensor(const WeightsFile& file, const std::string& name, const std::string& where) {
+  const auto found = file.tensors.find(name);
+  if (found == file.tensors.end()) ThrowFileError(where, "no tensor '" + name + "'");
+  return found->second;
+}
+
+void SetInCameraMotion(const WeightsFile& file, const std::string& prefix, int64_t L, const std::string& where,
+                       PersonEstimate* person) {
+  const auto matrix = [&](const std::string& name, const std::vector<int64_t>& shape) {
+    return RequireShape(RequireTensor(file, name, where), shape, where, name);
+  };
+  person->name = "0";
+  person->poses.setZero(L, 72);
+  person->poses.leftCols<3>() = matrix(prefix + "global_orient", {L, 3});
+  person->trans = matrix(prefix + "transl", {L, 3});
+  const RowMatrixXd k = matrix("K_fullimg", {L, 3, 3});
+  for (Eigen::Index i = 0; i < k.rows(); ++i) {
+    person->cameras.push_back(CameraFromK(k.row(i), where, Concatenate("K_fullimg: frame ", i)));
+  }
+  person->frames.resize(static_cast<size_t>(L));
+  std::iota(person->frames.begin(), person->frames.end(), 0);
+}
+
+Eigen::RowVectorXd RequireCount(const PickleValue* value, size_t count, const std::string& place,
+                                const std::string& key) {
+  if (value == nullptr) ThrowFileError(place, key, "is not there");
+  std::vector<double> numbers;
+  AppendNumbers(*value, place, key, &numbers);
+  if (numbers.size() != count ||
+      !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) {
+    ThrowFileError(place, key, Concatenate(numbers.size(), " numbers, expected ", count, " finite ones"));
+  }
+  return Eigen::Map<const Eigen::RowVectorXd>(numbers.data(), static_cast<Eigen::Index>(count));
 }
 
 BodyEstimate SmplPeople(

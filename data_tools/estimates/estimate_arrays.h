@@ -10,6 +10,7 @@
 #include "data_tools/estimates/body_estimate.h"
 #include "data_tools/formats/ndarray.h"
 #include "data_tools/formats/pickle.h"
+#include "data_tools/formats/weights_file.h"
 
 namespace bodyloom {
 
@@ -35,6 +36,23 @@ Eigen::Vector3d AxisAngleFromRows(const Eigen::Ref<const Eigen::RowVectorXd>& ni
 
 /// A pinhole camera of square pixels in the middle (w/2, h/2) of an image, as these systems place it.
 Camera CentredCamera(int width, int height, double focal_px);
+
+/// A row of nine numbers, [fx 0 cx; 0 fy cy; 0 0 1], as the camera of an image whose middle is the principal point.
+/// Throws std::runtime_error "where: key: …" for another matrix.
+Camera CameraFromK(const Eigen::Ref<const Eigen::RowVectorXd>& k, const std::string& where, const std::string& key);
+
+/// The tensor of this name; throws std::runtime_error naming `where` if there is none.
+const NdArray& RequireTensor(const WeightsFile& file, const std::string& name, const std::string& where);
+
+/// Takes what GVHMR and GEM write of their one person: `prefix`global_orient L×3 into the root's columns of poses
+/// (L×72, others 0), `prefix`transl L×3, K_fullimg L×3×3, frames 0 to L−1, the name "0". Throws as RequireShape().
+void SetInCameraMotion(const WeightsFile& file, const std::string& prefix, int64_t L, const std::string& where,
+                       PersonEstimate* person);
+
+/// The numbers of an array, a number, or lists of numbers inside each other: `count` finite ones. Throws
+/// std::runtime_error "place: key: …" otherwise, also for a null pointer.
+Eigen::RowVectorXd RequireCount(const PickleValue* value, size_t count, const std::string& place,
+                                const std::string& key);
 
 /// People of SMPL's body by name in one dictionary, each with `pose` (n×72 axis-angle), `betas` and `frame_ids`, as
 /// VIBE and WHAM write them. `rest` sets the system's other values of a person (its values; "where: person NAME"; trans

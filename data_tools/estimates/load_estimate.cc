@@ -2,16 +2,21 @@
 #include "data_tools/estimates/load_estimate.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "data_tools/body/body_landmarks.h"
 #include "data_tools/estimates/estimate_arrays.h"
+#include "data_tools/estimates/gem_reader.h"
 #include "data_tools/estimates/hmr_readers.h"
 #include "data_tools/estimates/phalp_reader.h"
+#include "data_tools/estimates/prompthmr_reader.h"
 #include "data_tools/estimates/sam3d_body_reader.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/inflate.h"
+#include "data_tools/formats/json_reader.h"
 #include "data_tools/formats/npz.h"
 #include "data_tools/formats/pickle.h"
+#include "data_tools/formats/printable.h"
 #include "data_tools/formats/torch_weights.h"
 #include "data_tools/formats/zip.h"
 #include "data_tools/motion/amass.h"
@@ -22,8 +27,9 @@ namespace bodyloom {
 namespace {
 
 constexpr const char* kExpectedEstimate =
-    "expected a track .npz, wham_output.pkl, vibe_output.pkl, PHALP's or 4D-Humans' results .pkl, GVHMR's "
-    "hmr4d_results.pt, or SAM 3D Body's .npz";
+    "expected a track .npz, wham_output.pkl, vibe_output.pkl, PHALP's or 4D-Humans' results .pkl, PromptHMR's "
+    "results.pkl, GVHMR's hmr4d_results.pt, GEM's smpl_params.pt or hpe_results.pt, SAM 3D Body's .npz or .json, or "
+    "SAM3DBody-cpp's .csv";
 
 bool IsTorchArchive(std::string_view bytes) {
   return LooksLikeZip(bytes) && bytes.find("/data.pkl") != std::string_view::npos;
@@ -32,6 +38,11 @@ bool IsTorchArchive(std::string_view bytes) {
 bool LooksLikePickle(std::string_view bytes) {
   return LooksLikeZlib(bytes) || LooksLikeGzip(bytes) ||
          (bytes.size() > 2 && bytes[0] == '\x80' && bytes[1] >= 2 && bytes[1] <= 5);
+}
+
+bool LooksLikeJson(std::string_view bytes) {
+  const size_t first = WithoutByteOrderMark(bytes).find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && std::string_view("{[").find(WithoutByteOrderMark(bytes)[first]) < 2;
 }
 
 }  // namespace
@@ -43,11 +54,13 @@ BodyEstimate EstimateFromBytes(const std::string& bytes, const std::string& wher
   if (IsTorchArchive(bytes)) {
     const WeightsFile file = TorchWeightsFromBytes(bytes, where);
     if (IsGvhmr(file)) return GvhmrFromTensors(file, where);
-    ThrowFileError(where, std::string("a file of torch.save without 'smpl_params_incam'; ") + kExpectedEstimate);
+    if (IsGem(file)) return GemFromTensors(file, where);
+    ThrowFileError(where, std::string("a file of torch.save without 'smpl_params_incam' or 'body_params_incam'; ") +
+                              kExpectedEstimate);
   }
   if (LooksLikeZip(bytes)) {
     const NpzArrays arrays = ReadNpzBytes(bytes, where);
-    if (IsSam3dBody(arrays)) return Sam3dBodyFromNpz(arrays, where);
+    if (IsSam3dBody(arrays)) return Sam3dBodyFromNpz(arrays, where, width, height);
     if (!IsAmass(arrays))
       ThrowFileError(where, std::string("an .npz without 'poses' and 'trans'; ") + kExpectedEstimate);
     if (arrays.count("K") == 0 && arrays.count("camera") == 0) {
@@ -55,10 +68,18 @@ BodyEstimate EstimateFromBytes(const std::string& bytes, const std::string& wher
     }
     return EstimateFromTrack(TrackFromArrays(arrays, where), where);
   }
+  if (IsSam3dBodyCsv(bytes)) return Sam3dBodyFromCsv(bytes, where);
+  if (LooksLikeJson(bytes)) {
+    const nlohmann::json json = ParseJson(bytes, where);
+    const JsonNode document(json, where);
+    if (IsSam3dBody(document)) return Sam3dBodyFromJson(document, width, height);
+    ThrowFileError(where, std::string("JSON without 'pred_keypoints_3d' and 'pred_cam_t'; ") + kExpectedEstimate);
+  }
   if (!LooksLikePickle(bytes)) ThrowFileError(where, std::string("unknown kind of file; ") + kExpectedEstimate);
   const PicklePtr file = ReadPickle(bytes, where);
   if (IsVibe(*file)) return VibeFromPickle(*file, where, width, height);
   if (IsWham(*file)) return WhamFromPickle(*file, where, width, height);
+  if (IsPromptHmr(*file)) return PromptHmrFromPickle(*file, where, width, height);
   if (IsPhalp(*file)) return PhalpFromPickle(*file, where, width, height);
   ThrowFileError(where, std::string(file->kind == PickleValue::Kind::kDict && file->dict.empty()
                                         ? "a pickle of an empty dictionary: nobody was found; "
@@ -68,7 +89,8 @@ BodyEstimate EstimateFromBytes(const std::string& bytes, const std::string& wher
 
 BodyEstimate LoadEstimate(const std::string& path, const LoadEstimateOptions& options) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return ReadSam3dBodyFolder(path);
+  if (std::filesystem::is_directory(path, ignored))
+    return ReadSam3dBodyFolder(path, options.image_width, options.image_height);
   return EstimateFromBytes(ReadFileBytes(path), path, options);
 }
 

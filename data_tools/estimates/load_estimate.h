@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Loads body estimates of other systems in any supported format, recognised by content.
 ///
-/// Read: WHAM's, VIBE's and PHALP's or 4D-Humans' joblib pickles, GVHMR's hmr4d_results.pt, SAM 3D Body's .npz or a
-/// folder of them, and tracks of this project's form (motion/track_io.h). No code in them is run.
+/// Read: WHAM's, VIBE's, PromptHMR's and PHALP's or 4D-Humans' joblib pickles, GVHMR's hmr4d_results.pt, GEM's
+/// smpl_params.pt and GEM-X's hpe_results.pt, SAM 3D Body's .npz and .json or a folder of them, SAM3DBody-cpp's .csv,
+/// and tracks of this project's form (motion/track_io.h). No code in them is run.
 #pragma once
 
 #include <string>
@@ -13,7 +14,8 @@
 namespace bodyloom {
 
 struct LoadEstimateOptions {
-  int image_width = 0, image_height = 0;  ///< of the video, 0 if unknown; WHAM and VIBE need it
+  int image_width = 0,
+      image_height = 0;  ///< of the video, 0 if unknown; WHAM and VIBE need it, PromptHMR's pixels follow it
 };
 
 /// Throws std::runtime_error in one line: what was found and what was expected; std::invalid_argument for an image size

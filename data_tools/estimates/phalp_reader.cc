@@ -18,33 +18,6 @@ using Kind = PickleValue::Kind;
 
 constexpr double kFocalAtCrop = 5000, kCrop = 256;
 
-/// The numbers of an array, a number, or lists of numbers inside each other.
-void AppendNumbers(const PickleValue& value, const std::string& place, const std::string& key,
-                   std::vector<double>* numbers) {
-  if (value.kind == Kind::kArray && value.array.is_number()) {
-    const std::vector<double> of_array = value.array.ToDoubles();
-    numbers->insert(numbers->end(), of_array.begin(), of_array.end());
-  } else if (value.kind == Kind::kInt || value.kind == Kind::kFloat) {
-    numbers->push_back(value.kind == Kind::kInt ? static_cast<double>(value.integer) : value.real);
-  } else if (value.kind == Kind::kList || value.kind == Kind::kTuple) {
-    for (const PicklePtr& item : value.items) AppendNumbers(*item, place, key, numbers);
-  } else {
-    ThrowFileError(place, key, "expected numbers");
-  }
-}
-
-Eigen::RowVectorXd RequireCount(const PickleValue* value, size_t count, const std::string& place,
-                                const std::string& key) {
-  if (value == nullptr) ThrowFileError(place, key, "is not there");
-  std::vector<double> numbers;
-  AppendNumbers(*value, place, key, &numbers);
-  if (numbers.size() != count ||
-      !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) {
-    ThrowFileError(place, key, Concatenate(numbers.size(), " numbers, expected ", count, " finite ones"));
-  }
-  return Eigen::Map<const Eigen::RowVectorXd>(numbers.data(), static_cast<Eigen::Index>(count));
-}
-
 const std::vector<PicklePtr>& RequireList(const PickleValue& frame, const std::string& key, size_t at_least,
                                           const std::string& place) {
   const PickleValue* value = frame.Find(key);

@@ -2,13 +2,12 @@
 #include "data_tools/observations/deeplabcut_reader.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "data_tools/formats/csv_lines.h"
 #include "data_tools/formats/printable.h"
 #include "data_tools/observations/frame_numbers.h"
 #include "data_tools/observations/landmark_names.h"
@@ -16,45 +15,6 @@
 
 namespace bodyloom {
 namespace {
-
-using Cells = std::vector<std::string_view>;
-
-constexpr size_t kMaxCells = 100'000;
-
-/// Lines of comma-separated cells, without line breaks; blank lines are passed over.
-class CsvLines {
- public:
-  CsvLines(std::string_view text, std::string where) : rest_(WithoutByteOrderMark(text)), where_(std::move(where)) {}
-
-  /// Takes the next line; false at the end.
-  bool Next(Cells* cells) {
-    std::string_view line;
-    while (line.empty()) {
-      if (rest_.empty()) return false;
-      const size_t end = rest_.find('\n');
-      line = rest_.substr(0, end);
-      rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
-      if (line.ends_with('\r')) line.remove_suffix(1);
-      ++line_;
-    }
-    cells->clear();
-    for (size_t begin = 0; begin <= line.size() && cells->size() <= kMaxCells;) {
-      const size_t end = std::min(line.find(',', begin), line.size());
-      cells->push_back(line.substr(begin, end - begin));
-      begin = end + 1;
-    }
-    if (cells->size() > kMaxCells) Fail(Concatenate("expected at most ", kMaxCells, " cells"));
-    return true;
-  }
-  [[noreturn]] void Fail(const std::string& message) const {
-    ThrowFileError(where_, Concatenate("line ", line_, ": ", message));
-  }
-
- private:
-  std::string_view rest_;
-  std::string where_;
-  size_t line_ = 0;
-};
 
 enum class Coordinate { kX, kY, kLikelihood };
 
@@ -86,8 +46,8 @@ Coordinate CoordinateOf(std::string_view text, const CsvLines& lines) {
 }
 
 Header ReadHeader(CsvLines* lines) {
-  std::map<std::string, Cells, std::less<>> rows;
-  Cells cells;
+  std::map<std::string, CsvCells, std::less<>> rows;
+  CsvCells cells;
   while (rows.find("coords") == rows.end()) {
     if (!lines->Next(&cells)) lines->Fail("the file ends, expected the row 'coords'");
     const std::string_view name = cells[0];
@@ -96,8 +56,8 @@ Header ReadHeader(CsvLines* lines) {
     }
     rows[std::string(name)] = cells;
   }
-  const Cells& coords = rows["coords"];
-  const Cells bodyparts = rows["bodyparts"], individuals = rows["individuals"];
+  const CsvCells& coords = rows["coords"];
+  const CsvCells bodyparts = rows["bodyparts"], individuals = rows["individuals"];
   if (bodyparts.size() != coords.size() || (!individuals.empty() && individuals.size() != coords.size())) {
     lines->Fail(Concatenate(coords.size(), " cells, expected as many as in the other rows of the header"));
   }
@@ -128,18 +88,8 @@ Header ReadHeader(CsvLines* lines) {
   return header;
 }
 
-double ValueOf(std::string_view cell, const CsvLines& lines) {
-  if (cell.empty() || cell == "nan" || cell == "NaN") return std::numeric_limits<double>::quiet_NaN();
-  double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size()) {
-    lines.Fail("found '" + PrintableText(cell) + "', expected a number or nothing");
-  }
-  return value;
-}
-
 /// The people of one row: those with a landmark.
-std::vector<DetectedPerson> PeopleOfRow(const Cells& cells, const Header& header, const CsvLines& lines) {
+std::vector<DetectedPerson> PeopleOfRow(const CsvCells& cells, const Header& header, const CsvLines& lines) {
   struct Values {
     double x = std::numeric_limits<double>::quiet_NaN(), y = x, confidence = 1;
   };
@@ -147,7 +97,7 @@ std::vector<DetectedPerson> PeopleOfRow(const Cells& cells, const Header& header
   std::vector<Values> values(K * static_cast<size_t>(header.num_individuals));
   for (size_t c = 0; c < header.columns.size(); ++c) {
     const Column& column = header.columns[c];
-    const double value = ValueOf(cells[header.num_index_cells + c], lines);
+    const double value = lines.Number(cells[header.num_index_cells + c]);
     if (column.landmark < 0) continue;
     Values& point = values[static_cast<size_t>(column.individual) * K + static_cast<size_t>(column.landmark)];
     (column.coordinate == Coordinate::kX   ? point.x
@@ -178,7 +128,7 @@ PeopleSequence DeepLabCutFromCsv(std::string_view text, const std::string& where
   const Header header = ReadHeader(&lines);
   std::vector<std::vector<DetectedPerson>> frames;
   std::vector<std::string> names;
-  Cells cells;
+  CsvCells cells;
   while (lines.Next(&cells)) {
     if (cells.size() != header.num_index_cells + header.columns.size()) {
       lines.Fail(Concatenate(cells.size(), " cells, expected ", header.num_index_cells + header.columns.size(),

@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 constexpr double kRotationTolerance = 1e-3;
 /// Skew attributed to rounding, as a share of the focal length.
 constexpr double kMaxSkew = 1e-6;
+constexpr double kHuman36mUnit_m = 1e-3;
 constexpr const char* kAffineFile = "video_to_calib_affine.json";
 
 void SetSize(const JsonNode& node, double width, double height, Camera* camera) {
@@ -116,6 +117,33 @@ NamedCamera Pose2SimCamera(const JsonNode& node) {
   SetPose(node.At("rvec"), node.At("tvec_m"), 1, &named.pose);
   named.has_pose = true;
   return named;
+}
+
+/// Entry `name` of Human3.6M's file.
+NamedCamera Human36mCamera(const JsonNode& node, const std::string& name) {
+  NamedCamera named;
+  named.name = name;
+  const std::vector<double> f = node.At("f").Numbers(2), c = node.At("c").Numbers(2);
+  named.camera.fx = f[0], named.camera.fy = f[1], named.camera.cx = c[0], named.camera.cy = c[1];
+  SetSize(node, 1000, name == "1" || name == "4" ? 1002 : 1000, &named.camera);
+  SetPose(node.At("R"), node.At("t"), kHuman36mUnit_m, &named.pose);
+  named.has_pose = true;
+  const auto shows = [&](const Eigen::Vector3d& origin) {
+    Eigen::Vector2d pixel;
+    return named.camera.Project(origin, &pixel) && pixel.minCoeff() >= 0 && pixel.x() < named.camera.width &&
+           pixel.y() < named.camera.height;
+  };
+  Eigen::Vector3d& translation = named.pose.camera_from_world_translation;
+  const Eigen::Vector3d of_centre = -named.pose.camera_from_world_rotation * translation;
+  if (!(f[0] > 0 && f[1] > 0) || (!shows(translation) && !shows(of_centre))) {
+    node.Fail("a camera that shows the origin of Human3.6M's world");
+  }
+  if (!shows(translation)) translation = of_centre;
+  return named;
+}
+
+bool IsHuman36m(const JsonNode& document) {
+  return document.is_object() && document.Has("1") && document.At("1").Has("R") && document.At("1").Has("f");
 }
 
 NamedCamera OwnCamera(const JsonNode& node) {
@@ -227,10 +255,14 @@ CameraPose PoseFromJson(const JsonNode& rotation, const JsonNode& translation) {
 }
 
 std::vector<NamedCamera> CamerasFromJson(const JsonNode& document) {
+  std::vector<NamedCamera> cameras;
+  if (IsHuman36m(document)) {
+    for (const std::string& name : document.Keys()) cameras.push_back(Human36mCamera(document.At(name), name));
+    return cameras;
+  }
   const bool is_one = document.is_object() && !document.Has("cameras");
   const JsonNode list = document.Has("cameras") ? document.At("cameras") : document;
   if (!is_one && (!list.is_array() || list.size() == 0)) list.Fail("a list of cameras");
-  std::vector<NamedCamera> cameras;
   for (size_t i = 0; i < (is_one ? 1 : list.size()); ++i) {
     const JsonNode node = is_one ? document : list.At(i);
     if (!node.is_object()) node.Fail("a camera");

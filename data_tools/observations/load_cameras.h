@@ -17,7 +17,12 @@
 ///      "rotation" 3×3 or Rodrigues 3, "translation" 3 metres: camera from world, optional
 ///      "name"                               optional
 ///    Of a rig's file (rig_io.h) the cameras are read.
-/// Source: google/aistplusplus_api loader.py (1).
+/// 4. Human3.6M's Human36M_subject*_camera.json, an object of "1" to "4", each {R 3×3, t 3 mm, f 2, c 2 pixels}. Images
+///    of 1 and 4 have 1000×1002 pixels, of 2 and 3 1000×1000; there is no distortion. t is the camera's centre in older
+///    files and the translation in newer ones: it is the one by which the world's origin, the middle of the room, lies
+///    in the image.
+/// Source: google/aistplusplus_api loader.py (1); mks0601/3DMPPE_POSENET_RELEASE, tool/Human36M/h36m2coco.py and
+/// common/utils/pose_utils.py of its versions, facebookresearch/VideoPose3D, common/h36m_dataset.py (4).
 #pragma once
 
 #include <Eigen/Core>

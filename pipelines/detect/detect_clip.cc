@@ -17,6 +17,7 @@
 #include "geometry/scene/observations.h"
 #include "pipelines/detect/cut_masks.h"
 #include "pipelines/detect/find_turn.h"
+#include "pipelines/detect/upright_people.h"
 #include "pipelines/files.h"
 #include "pipelines/report_json.h"
 #include "pipelines/report_text.h"
@@ -63,6 +64,7 @@ DetectedClip DetectLandmarks(const DetectClipRequest& request, const PipelineCal
   callbacks.Begin("detecting people");
   clock->Begin("detect");
   DetectedClip clip = DetectPeople(detect, callbacks);
+  SayAdviceOnTurn(detect.video, clip.people, callbacks);
   const auto has_people = [](const std::vector<DetectedPerson>& people) { return !people.empty(); };
   FoundLandmarks& found = report->landmarks.emplace();
   found.network = FrameDetectorName(detect.detector);

@@ -11,7 +11,6 @@
 #include "geometry/base/callbacks.h"
 #include "geometry/base/check.h"
 #include "geometry/base/prefetcher.h"
-#include "pipelines/detect/upright_people.h"
 #include "pipelines/files.h"
 #include "pipelines/video/track_video.h"
 #include "tracking/detection/people_between.h"
@@ -164,8 +163,6 @@ DetectedClip DetectOnce(const DetectPeopleRequest& request, const PipelineCallba
   for (const std::string& text : {source.note(), source.warning()}) {
     if (!text.empty()) callbacks.Message(text);
   }
-  const std::string advice = AdviceOnTurn(clip.people);
-  if (!advice.empty()) callbacks.Message(request.video + ": " + advice);
   return clip;
 }
 

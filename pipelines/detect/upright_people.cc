@@ -41,4 +41,9 @@ std::string AdviceOnTurn(const PeopleSequence& people) {
   return "most people lie on their side or are upside down; if it was the camera that lay or hung, give --rotate auto";
 }
 
+void SayAdviceOnTurn(const std::string& video, const PeopleSequence& people, const PipelineCallbacks& callbacks) {
+  const std::string advice = AdviceOnTurn(people);
+  if (!advice.empty()) callbacks.Message(video + ": " + advice);
+}
+
 }  // namespace bodyloom

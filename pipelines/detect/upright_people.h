@@ -5,6 +5,7 @@
 #include <string>
 
 #include "data_tools/observations/people.h"
+#include "geometry/base/callbacks.h"
 
 namespace bodyloom {
 
@@ -19,5 +20,7 @@ Trunk TrunkOf(const DetectedPerson& person, const KeypointConvention& convention
 /// Advice to look for the turn of the camera (FindTurn()), a sentence, if at most a quarter of the clip's trunks that
 /// are seen with a confidence of at least ½ are upright; else, and without such trunks, empty.
 std::string AdviceOnTurn(const PeopleSequence& people);
+/// Says it of the people found in `video`, where the caller's user can follow it.
+void SayAdviceOnTurn(const std::string& video, const PeopleSequence& people, const PipelineCallbacks& callbacks);
 
 }  // namespace bodyloom

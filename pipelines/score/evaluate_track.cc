@@ -3,17 +3,23 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "data_tools/body/body_io.h"
 #include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/human36m.h"
+#include "data_tools/datasets/rich_truth.h"
 #include "data_tools/datasets/video_truth.h"
 #include "data_tools/evaluation/aist_evaluation.h"
 #include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/human36m_evaluation.h"
+#include "data_tools/evaluation/metrics.h"
 #include "data_tools/evaluation/part_label_evaluation.h"
 #include "data_tools/evaluation/rig_track_evaluation.h"
 #include "data_tools/evaluation/room_physics.h"
@@ -22,9 +28,12 @@
 #include "data_tools/evaluation/truth_evaluation.h"
 #include "data_tools/evaluation/world_drift.h"
 #include "data_tools/formats/atomic_file.h"
+#include "data_tools/formats/json_reader.h"
 #include "data_tools/formats/npz.h"
+#include "data_tools/formats/object_npy.h"
 #include "data_tools/formats/pickle.h"
 #include "data_tools/motion/track_io.h"
+#include "data_tools/observations/load_cameras.h"
 #include "data_tools/observations/part_labels.h"
 #include "data_tools/observations/rig_io.h"
 #include "geometry/base/check.h"
@@ -36,10 +45,8 @@
 namespace bodyloom {
 namespace {
 
-/// Against another track, each frame as its camera saw it, and where the scenes drift apart. Frames that the truth has
-/// lost are left out.
-Evaluation EvaluateAgainstTrack(const Track& given_track, const Track& given_truth, const BodyModel& body,
-                                const BodyModel* true_body = nullptr) {
+/// Both tracks without the frames that the truth has lost.
+std::pair<Track, Track> KnownFrames(const Track& given_track, const Track& given_truth) {
   std::vector<int> known;
   for (int t = 0; t < given_truth.num_frames(); ++t) {
     if (given_truth.HasResult(t)) known.push_back(t);
@@ -47,8 +54,15 @@ Evaluation EvaluateAgainstTrack(const Track& given_track, const Track& given_tru
   BODYLOOM_CHECK(!known.empty(), "the truth has lost every frame, there is nothing to compare with");
   const bool selects =
       int(known.size()) < given_truth.num_frames() && given_track.num_frames() == given_truth.num_frames();
-  const Track track = selects ? SelectFrames(given_track, known) : given_track;
-  const Track truth = selects ? SelectFrames(given_truth, known) : given_truth;
+  if (!selects) return {given_track, given_truth};
+  return {SelectFrames(given_track, known), SelectFrames(given_truth, known)};
+}
+
+/// Against another track, each frame as its camera saw it, and where the scenes drift apart. Frames that the truth has
+/// lost are left out.
+Evaluation EvaluateAgainstTrack(const Track& given_track, const Track& given_truth, const BodyModel& body,
+                                const BodyModel* true_body = nullptr) {
+  const auto [track, truth] = KnownFrames(given_track, given_truth);
   VertexErrorOptions options;
   options.true_body = true_body;
   Evaluation evaluation = EvaluateAgainstTruth(
@@ -83,31 +97,101 @@ Evaluation EvaluateAgainstRigTrack(const EvaluateTrackRequest& request, const Tr
   }
 }
 
-/// Against a sequence of a data set of videos.
-Evaluation EvaluateAgainstVideoTruth(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
-                                     const PipelineCallbacks& callbacks) {
-  const PicklePtr file = ReadPickleFile(request.truth);
-  const VideoTruth truth = VideoTruthFromPickle(*file, request.true_person, request.truth);
-  std::optional<BodyModel> true_body;
-  if (!request.true_body.empty()) true_body = LoadBody(request.true_body);
-  RequireTrackFitsBody(truth.track, true_body ? *true_body : body, request.truth);
-  if (!true_body && truth.gender != "neutral") {
-    callbacks.Message(Concatenate(request.truth, ": of SMPL's ", truth.gender,
-                                  " body; without it as --true-body shapes and joints are those of '", body.name(),
-                                  "'"));
+/// The camera of a data set whose cameras stand still.
+NamedCamera StandingCamera(const EvaluateTrackRequest& request) {
+  constexpr std::string_view kCamera = "_camera.json";
+  const std::string& truth = request.truth;
+  std::string cameras = request.cameras;
+  for (const std::string_view ending : {"_joint_3d.json", "_smpl_param.json"}) {
+    if (!cameras.empty() || !truth.ends_with(ending)) continue;
+    const std::string beside = truth.substr(0, truth.size() - ending.size()) + std::string(kCamera);
+    if (std::filesystem::exists(beside)) cameras = beside;
   }
-  const Track at_times = FramesNearTimes(truth.track, track.motion.timestamps, request.truth);
-  Evaluation evaluation = EvaluateAgainstTrack(track, at_times, body, true_body ? &*true_body : nullptr);
-  evaluation.protocol = truth.dataset == "EMDB" ? "emdb" : "3dpw";
-  evaluation.subject = {{"sequence", truth.sequence}, {"gender", truth.gender}};
+  if (cameras.empty()) {
+    throw RequestError(truth + ": a truth in the world of its cameras: give them, --cameras, and --view");
+  }
+  RequireReadable(cameras, "cameras");
+  if (std::filesystem::is_directory(truth)) return ReadRichCamera(cameras, request.view);
+  NamedCamera camera = FindCamera(LoadCameras(cameras), request.view, cameras);
+  if (!camera.has_pose) throw std::runtime_error(cameras + ": cameras without a pose, expected those of the data set");
+  return camera;
+}
+
+RowMatrixXd RegressorOf(const EvaluateTrackRequest& request, const BodyModel& body) {
+  return request.joint_regressor.empty() ? RowMatrixXd() : ReadJointRegressor(request.joint_regressor, body);
+}
+
+/// Against a motion of a data set of videos.
+Evaluation EvaluateAgainstVideoTruth(const EvaluateTrackRequest& request, const VideoTruth& truth, const Track& track,
+                                     const BodyModel& body, const PipelineCallbacks& callbacks) {
+  std::optional<BodyModel> given_body;
+  if (!request.true_body.empty()) given_body = LoadBody(request.true_body);
+  const BodyModel& true_body = given_body ? *given_body : body;
+  RequireTrackFitsBody(truth.track, true_body, request.truth);
+  if (!given_body && truth.gender != "neutral") {
+    const std::string whose = truth.gender.empty() ? "subject " + truth.subject + "'s" : truth.gender;
+    callbacks.Message(Concatenate(request.truth, ": of ", truth.track.motion.body == "smplx" ? "SMPL-X" : "SMPL", "'s ",
+                                  whose, " body; without it as --true-body shapes and joints are those of '",
+                                  body.name(), "'"));
+  }
+  const Track at_times = SelectFrames(
+      truth.track, FramesNearTimes(truth.track.num_frames(), truth.fps, track.motion.timestamps, request.truth));
+  Evaluation evaluation = EvaluateAgainstTrack(track, at_times, body, given_body ? &true_body : nullptr);
+  evaluation.protocol = truth.protocol;
+  for (const auto& [name, value] :
+       {std::pair("sequence", truth.sequence), std::pair("gender", truth.gender), std::pair("person", truth.subject)}) {
+    if (!value.empty()) evaluation.subject.emplace_back(name, value);
+  }
+  if (!request.joint_regressor.empty()) {
+    ReadJointRegressor(request.joint_regressor, true_body);
+    const auto [known_track, known_truth] = KnownFrames(track, at_times);
+    const Track seen = TrackInCameras(body, known_track);
+    AddRegressedJoints(seen, NearestFramesWithResult(HasResults(seen, seen.num_frames())),
+                       TrackInCameras(true_body, known_truth), body, true_body, RegressorOf(request, body),
+                       &evaluation);
+  }
   return evaluation;
+}
+
+/// Against joints of Human3.6M.
+Evaluation EvaluateAgainstHuman36m(const EvaluateTrackRequest& request, const Human36mClip& clip, const Track& track,
+                                   const BodyModel& body) {
+  const NamedCamera camera = StandingCamera(request);
+  const std::vector<int> frames =
+      FramesNearTimes(int(clip.joints.size()), kHuman36mFps, track.motion.timestamps, request.truth);
+  Evaluation evaluation =
+      EvaluateHuman36m(TrackInCameras(body, track), clip.joints, frames, camera.pose, body, RegressorOf(request, body));
+  evaluation.subject = {{"sequence", clip.sequence}, {"view", camera.name}};
+  return evaluation;
+}
+
+Evaluation EvaluateAgainstJson(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
+                               const PipelineCallbacks& callbacks) {
+  constexpr JsonLimits kSubject = {.max_bytes = size_t{1} << 30};
+  const nlohmann::json json = ReadJsonFile(request.truth, kSubject);
+  const JsonNode document(json, request.truth);
+  if (!HasHuman36mSmpl(document)) {
+    return EvaluateAgainstHuman36m(request, Human36mFromJson(document, request.sequence), track, body);
+  }
+  return EvaluateAgainstVideoTruth(request, Human36mSmplFromJson(document, request.sequence, StandingCamera(request)),
+                                   track, body, callbacks);
 }
 
 /// Against a file: what kind of truth it is shows in what it holds. A true motion goes to `true_motion`.
 Evaluation EvaluateAgainstFile(const EvaluateTrackRequest& request, const Track& track, const BodyModel& body,
                                const PipelineCallbacks& callbacks, std::optional<Motion>* true_motion) {
-  if (request.truth.ends_with(".pkl")) return EvaluateAgainstVideoTruth(request, track, body, callbacks);
+  if (request.truth.ends_with(".pkl")) {
+    const PicklePtr file = ReadPickleFile(request.truth);
+    return EvaluateAgainstVideoTruth(request, VideoTruthFromPickle(*file, request.true_person, request.truth), track,
+                                     body, callbacks);
+  }
+  if (request.truth.ends_with(".json")) return EvaluateAgainstJson(request, track, body, callbacks);
   const NpzArrays arrays = ReadNpz(request.truth);
+  if (IsHuman36mPositions(arrays)) {
+    const PicklePtr positions = ReadObjectOfNpz(ReadFileBytes(request.truth), "positions_3d", request.truth);
+    return EvaluateAgainstHuman36m(request, Human36mFromPositions(*positions, request.sequence, request.truth), track,
+                                   body);
+  }
   if (!HasPartLabels(arrays)) {
     Track truth = TrackFromArrays(arrays, request.truth, MovingCamera::kTake);
     Evaluation evaluation = EvaluateAgainstTrack(track, truth, body);
@@ -143,9 +227,13 @@ Evaluation EvaluateAgainstFiles(const EvaluateTrackRequest& request, const Track
   if (fs::exists(truth / "calib_refined.json")) {
     return EvaluatePose2Sim(track, request.truth, request.view.empty() ? "cam_01" : request.view);
   }
+  if (IsRichSequence(request.truth)) {
+    return EvaluateAgainstVideoTruth(
+        request, ReadRichTruth(request.truth, request.true_person, StandingCamera(request)), in_scene, body, callbacks);
+  }
   throw std::runtime_error(request.truth +
-                           ": neither keypoints2d/ (AIST++) nor calib_refined.json (Pose2Sim) in this folder, expected "
-                           "one of them, or a track file");
+                           ": neither keypoints2d/ (AIST++), calib_refined.json (Pose2Sim) nor folders of frames "
+                           "(RICH) in this folder, expected one of them, or a track file");
 }
 
 /// Measures the surface of the tracked body: in the world that the track states, and its self-penetration beside that
@@ -183,6 +271,21 @@ void CheckEvaluationRig(const EvaluateTrackRequest& request, const EvaluationInM
   }
 }
 
+/// Checks what goes with motions of data sets only.
+void CheckDataSetOptions(const EvaluateTrackRequest& request) {
+  const bool is_json = request.truth.ends_with(".json");
+  const bool is_pickle_or_folder = request.truth.ends_with(".pkl") || std::filesystem::is_directory(request.truth);
+  if ((!request.true_body.empty() && !is_pickle_or_folder && !is_json) ||
+      (request.true_person != 0 && !is_pickle_or_folder)) {
+    throw RequestError(
+        "--true-body and --true-person are of a sequence of EMDB, 3DPW or RICH: give --truth FILE.pkl or its folder");
+  }
+  if (!request.joint_regressor.empty() && !is_json && !is_pickle_or_folder && !request.truth.ends_with(".npz")) {
+    throw RequestError("--joint-regressor is of motions of data sets: give --truth");
+  }
+  RequireReadable(request.joint_regressor, "joint regressor");
+}
+
 /// Checks the request and its files, except the track and the body.
 void CheckEvaluation(const EvaluateTrackRequest& request, const EvaluationInMemory& given) {
   if ((!request.truth.empty() || given.truth != nullptr || HasRig(request, given)) && !request.seen.empty()) {
@@ -194,9 +297,7 @@ void CheckEvaluation(const EvaluateTrackRequest& request, const EvaluationInMemo
   }
   CheckEvaluationRig(request, given);
   for (const RigDetections& one : request.seen) RequireReadable(one.detections, "detections");
-  if ((!request.true_body.empty() || request.true_person != 0) && !request.truth.ends_with(".pkl")) {
-    throw RequestError("--true-body and --true-person are of a sequence of EMDB or 3DPW: give --truth FILE.pkl");
-  }
+  CheckDataSetOptions(request);
   RequireReadable(request.truth, "truth");
   RequireReadable(request.true_body, "true body");
   RequireReadable(request.rig, "rig");

@@ -17,8 +17,8 @@ namespace bodyloom {
 struct EvaluateTrackRequest {
   std::string track;  ///< .npz
   /// Reference data, which determines the protocol: a track or part labels (.npz), a sequence of EMDB or 3DPW (.pkl),
-  /// an AIST++ folder (keypoints2d/), or a Pose2Sim folder (calib_refined.json). Without this and `seen`: the track
-  /// alone (evaluation.h).
+  /// a sequence's folder of RICH, joints or SMPL fits of Human3.6M (.json, .npz), an AIST++ folder (keypoints2d/), or a
+  /// Pose2Sim folder (calib_refined.json). Without this and `seen`: the track alone (evaluation.h).
   std::string truth;
   /// Instead of `truth`: detections of the person by two or more calibrated cameras of a rig; `cameras` is the
   /// calibration, `view` the camera that the track was fitted to (rig_clip.h).
@@ -28,11 +28,14 @@ struct EvaluateTrackRequest {
   std::string rig;
   bool equal_clocks = false;  ///< cameras of `rig` whose clocks are not known have the first one's
   std::string body;           ///< body of track and truth; empty: the built-in one
-  std::string true_body;      ///< body of a true motion of EMDB or 3DPW (SMPL of its sex); empty: `body`
-  int true_person = 0;        ///< person of a 3DPW file
-  std::string cameras;        ///< AIST++: camera folder; empty: truth/cameras
-  std::string sequence;       ///< AIST++: name of the clip
-  /// Camera that the track was fitted to; empty: c01 (AIST++), cam_01 (Pose2Sim), the first one (`rig`).
+  std::string true_body;      ///< body of a data set's true motion (SMPL or SMPL-X of its sex); empty: `body`
+  int true_person = 0;        ///< person of a 3DPW file, subject of RICH
+  /// J_regressor_h36m.npy (human36m_evaluation.h): joints of Human3.6M are regressed from the body's vertices; for
+  /// motions of other data sets such joints are compared besides.
+  std::string joint_regressor;
+  std::string cameras;   ///< AIST++: camera folder, empty: truth/cameras; RICH: the scene's; Human3.6M: *_camera.json
+  std::string sequence;  ///< AIST++: name of the clip; Human3.6M: "2/1", "S9/Directions 1" (human36m.h)
+  /// Camera that the track was fitted to; empty: c01 (AIST++), cam_01 (Pose2Sim), the first one (`rig`), the only one.
   std::string view;
   std::string json;  ///< EvaluationJson; empty: not written
 };

@@ -9,6 +9,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "geometry/scene/observations.h"
+#include "pipelines/detect/upright_people.h"
 #include "pipelines/track/clip_camera_path.h"
 #include "pipelines/track/picture_lines.h"
 #include "pipelines/video/track_video.h"
@@ -102,6 +103,7 @@ void CheckTrackPeopleRequest(const TrackPeopleRequest& request) {
 ChosenPeople DetectAndChoosePeople(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks) {
   ChosenPeople people;
   people.clip = DetectForTracking(request.track, callbacks, request.max_people);
+  SayAdviceOnTurn(request.track.video, people.clip.people, callbacks);
   people.everybody = LinkPeople(people.clip.people);
   people.chosen = ChoosePeople(request, people.clip, people.everybody);
   return people;

@@ -76,8 +76,14 @@ void TakeMotion(const BodyEstimate& estimate, const PersonEstimate& person, cons
 }  // namespace
 
 InitialPoses ReadInitialPoses(const InitialPosesRequest& request) {
-  const BodyEstimate estimate =
+  BodyEstimate estimate =
       LoadEstimate(request.path, {.image_width = request.camera.width, .image_height = request.camera.height});
+  if (!estimate.has_places) {
+    if (request.keypoints == nullptr) {
+      ThrowFileError(request.path, estimate.system + ": its file does not tell where people are: give 2D joints, too");
+    }
+    PlaceByDetections(*request.keypoints, request.camera, request.path, &estimate);
+  }
   CheckImageSize(estimate.people[0], request);
   const PersonEstimate& person = ChoosePerson(estimate, request);
   CheckFrames(estimate, person, request);

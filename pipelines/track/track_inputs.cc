@@ -16,6 +16,7 @@
 #include "data_tools/observations/part_labels.h"
 #include "geometry/base/check.h"
 #include "geometry/scene/track_edits.h"
+#include "pipelines/detect/upright_people.h"
 #include "pipelines/files.h"
 #include "pipelines/track/detected_people.h"
 #include "pipelines/track/observation_pixels.h"
@@ -194,6 +195,7 @@ void CutToSpan(const TrackRequest& request, TrackInputs* inputs) {
 /// Detects people in the video: the chosen one's landmarks, and the mask.
 void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
   const DetectedClip clip = DetectForTracking(request, callbacks);
+  SayAdviceOnTurn(request.video, clip.people, callbacks);
   const PersonTrack person = PersonOf(clip.people, request.person, request.video);
   DetectedObservations seen = ObservationsOf(clip, person, WholeClip(clip), request, *inputs);
   inputs->keypoints = std::move(seen.keypoints);

@@ -5,12 +5,16 @@
 #pragma once
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "data_tools/avatar/avatar_file.h"
 #include "data_tools/body_making/make_builtin_body.h"
+#include "data_tools/datasets/human36m.h"
+#include "data_tools/datasets/rich_truth.h"
 #include "data_tools/datasets/video_truth.h"
+#include "data_tools/estimates/gem_reader.h"
 #include "data_tools/estimates/hmr_readers.h"
 #include "data_tools/estimates/load_estimate.h"
 #include "data_tools/formats/zip.h"
@@ -159,9 +163,13 @@ inline void CheckEstimate(const BodyEstimate& estimate) {
   if (estimate.people.empty()) throw std::logic_error("an estimate of nobody");
   for (const PersonEstimate& person : estimate.people) {
     const auto n = static_cast<Eigen::Index>(person.frames.size());
-    if (n == 0 || person.poses.rows() != n || person.poses.cols() != 72 || person.trans.rows() != n ||
-        static_cast<Eigen::Index>(person.cameras.size()) != n) {
+    if (n == 0 || person.poses.rows() != n || person.poses.cols() != (estimate.has_landmarks ? 0 : 72) ||
+        person.trans.rows() != n || static_cast<Eigen::Index>(person.cameras.size()) != n ||
+        static_cast<Eigen::Index>(person.landmarks.size()) != (estimate.has_landmarks ? n : 0)) {
       throw std::logic_error("frames disagree");
+    }
+    for (const MatrixX3d& landmarks : person.landmarks) {
+      if (landmarks.rows() != 21 || !landmarks.allFinite()) throw std::logic_error("landmarks that are none");
     }
     if (!person.poses.allFinite() || !person.trans.allFinite() || !person.betas.allFinite()) {
       throw std::logic_error("a pose that is no number");
@@ -171,34 +179,75 @@ inline void CheckEstimate(const BodyEstimate& estimate) {
         throw std::logic_error("frames out of order");
       }
     }
-    if (person.frames.back() < 1000) {
+    if (person.frames.back() < 1000 && estimate.has_landmarks) {
+      LandmarksInCamera(person, MakePinhole(640, 480, 500), 1000);
+    } else if (person.frames.back() < 1000) {
       EstimateInCamera(person, MakePinhole(640, 480, 500), 1000, estimate.rest_pelvis, Eigen::Vector3d::Zero());
     }
   }
 }
 
-/// Results of any other system; GVHMR's without the archive, whose checksums no mutation passes.
+/// Results of any other system; GVHMR's and GEM's without the archive, whose checksums no mutation passes.
 inline bool AcceptsEstimate(const std::string& bytes) {
   if (Accepts([&] { CheckEstimate(EstimateFromBytes(bytes, "fuzz.pkl", {640, 480})); })) return true;
   WeightsFile file;
   for (const auto& [name, array] : FramedArrays(bytes)) file.tensors[name] = array;
-  return Accepts([&] { CheckEstimate(GvhmrFromTensors(file, "fuzz.pt")); });
+  return Accepts(
+      [&] { CheckEstimate(IsGem(file) ? GemFromTensors(file, "fuzz.pt") : GvhmrFromTensors(file, "fuzz.pt")); });
+}
+
+inline void CheckVideoTruth(const VideoTruth& truth) {
+  const Track& track = truth.track;
+  for (int t = 0; t < track.num_frames(); ++t) {
+    const bool is_lost = track.frame_status.at(size_t(t)) == FrameStatus::kLost;
+    if (track.motion.HasPose(t) == is_lost) throw std::logic_error("a pose that is no number, or of a lost frame");
+    if (!track.camera_from_scene.at(size_t(t)).camera_from_world_rotation.allFinite()) {
+      throw std::logic_error("a camera that is nowhere");
+    }
+  }
+  if (FramesNearTimes(track.num_frames(), truth.fps, {0.0}, "fuzz").at(0) != 0) throw std::logic_error("no frame 0");
 }
 
 /// Sequences of EMDB and 3DPW.
 inline bool AcceptsVideoTruth(const std::string& bytes) {
-  return Accepts([&] {
-    const VideoTruth truth = VideoTruthFromPickle(*ReadPickle(bytes, "fuzz.pkl"), 0, "fuzz.pkl");
-    const Track& track = truth.track;
-    for (int t = 0; t < track.num_frames(); ++t) {
-      const bool is_lost = track.frame_status.at(size_t(t)) == FrameStatus::kLost;
-      if (track.motion.HasPose(t) == is_lost) throw std::logic_error("a pose that is no number, or of a lost frame");
-      if (!track.camera_from_scene.at(size_t(t)).camera_from_world_rotation.allFinite()) {
-        throw std::logic_error("a camera that is nowhere");
-      }
+  return Accepts([&] { CheckVideoTruth(VideoTruthFromPickle(*ReadPickle(bytes, "fuzz.pkl"), 0, "fuzz.pkl")); });
+}
+
+/// A camera of RICH and the body of a frame.
+inline bool AcceptsRich(const std::string& bytes) {
+  const bool camera = Accepts([&] {
+    const NamedCamera named = RichCameraFromXml(bytes, "fuzz.xml");
+    if (!named.pose.camera_from_world_rotation.allFinite() || !(named.camera.fx > 0) || named.camera.width < 1) {
+      throw std::logic_error("a camera that shows nothing");
     }
-    FramesNearTimes(track, {0.0}, "fuzz.pkl");
   });
+  const bool body = Accepts([&] {
+    const Eigen::RowVectorXd row = RichBodyFromPickle(*ReadPickle(bytes, "fuzz.pkl"), "fuzz.pkl");
+    if (row.size() < 70 || !row.allFinite()) throw std::logic_error("a body that is none");
+  });
+  return camera || body;
+}
+
+/// Joints and SMPL fits of Human3.6M as JSON, and positions_3d as a pickle.
+inline bool AcceptsHuman36m(const std::string& bytes) {
+  const auto check = [](const Human36mClip& clip) {
+    if (clip.joints.empty()) throw std::logic_error("a clip without frames");
+    for (const MatrixX3d& joints : clip.joints) {
+      if ((joints.rows() != 0 && joints.rows() != 17) || !joints.allFinite()) throw std::logic_error("not 17 joints");
+    }
+  };
+  bool taken =
+      Accepts([&] { check(Human36mFromPositions(*ReadPickle(bytes, "fuzz.npz"), "S9/Directions 1", "fuzz.npz")); });
+  taken |= Accepts([&] {
+    const nlohmann::json json = ParseJson(bytes, "fuzz.json");
+    const JsonNode document(json, "fuzz.json");
+    if (HasHuman36mSmpl(document)) {
+      CheckVideoTruth(Human36mSmplFromJson(document, "2/1", {}));
+    } else {
+      check(Human36mFromJson(document, "2/1"));
+    }
+  });
+  return taken;
 }
 
 /// Files of detections of any format, with the person selected and missing times filled in.

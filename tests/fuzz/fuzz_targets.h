@@ -188,7 +188,10 @@ inline constexpr const char* kNames[] = {"v_template",
                                          "label_kind",
                                          "mask_runs",
                                          "mask_count",
-                                         "mask_box"};
+                                         "mask_box",
+                                         "body_params_incam.body_pose",
+                                         "body_params_incam.global_orient",
+                                         "body_params_incam.transl"};
 
 /// Parses named arrays without an archive, whose checksums no mutation passes: repeated (index of a known name, 3 bytes
 /// of length, .npy bytes).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Writes results of WHAM, VIBE, PHALP and GVHMR in their own formats, from people given as numbers.
+/// Writes results of WHAM, VIBE, PHALP, PromptHMR, GVHMR and GEM in their own formats, from people given as numbers.
 #pragma once
 
 #include <string>
@@ -112,33 +112,147 @@ inline std::string PhalpFile(const std::vector<PersonEstimate>& people, int num_
   return joblib_stream::Compressed(stream.Add("u").Finish());
 }
 
-/// One person in all frames, pinhole cameras.
-inline std::string GvhmrFile(const PersonEstimate& person) {
-  const int n = Count(person);
-  std::vector<torch_stream::RawStorage> storages;
-  const auto tensor = [&](const std::vector<float>& values, const std::vector<int>& shape) {
-    const std::string key = std::to_string(storages.size());
+/// Tensors of a torch.save archive, added one by one.
+class TensorArchive {
+ public:
+  std::string Tensor(const std::vector<float>& values, const std::vector<int>& shape) {
+    const std::string key = std::to_string(storages_.size());
     const int count = static_cast<int>(values.size());
-    storages.push_back({key, RawOf(values), values.size()});
+    storages_.push_back({key, RawOf(values), values.size()});
     std::vector<int> stride(shape.size(), 1);
     for (size_t d = shape.size() - 1; d > 0; --d) stride[d - 1] = stride[d] * shape[d];
     return torch_stream::Tensor(torch_stream::StorageId("FloatStorage", key, count, false), 0, shape, stride);
-  };
-  std::vector<float> k;
-  for (const Camera& camera : person.cameras) {
-    for (const float value : Floats(camera.K())) k.push_back(value);
   }
-  const auto parameters = [&] {
-    return Dict({{Unicode("body_pose"), tensor(Floats(RowMatrixXd(person.poses.middleCols(3, 63))), {n, 63})},
-                 {Unicode("betas"), tensor(BetasOfFrames(person), {n, static_cast<int>(person.betas.size())})},
-                 {Unicode("global_orient"), tensor(Floats(RowMatrixXd(person.poses.leftCols(3))), {n, 3})},
-                 {Unicode("transl"), tensor(Floats(person.trans), {n, 3})}});
+  std::string K(const PersonEstimate& person) {
+    std::vector<float> k;
+    for (const Camera& camera : person.cameras) {
+      for (const float value : Floats(camera.K())) k.push_back(value);
+    }
+    return Tensor(k, {Count(person), 3, 3});
+  }
+  [[nodiscard]] std::string Finish(const std::string& object) const { return torch_stream::Archive(object, storages_); }
+
+ private:
+  std::vector<torch_stream::RawStorage> storages_;
+};
+
+/// body_pose, betas, global_orient and transl of SMPL-X.
+inline std::string SmplxParameters(const PersonEstimate& person, TensorArchive* archive) {
+  const int n = Count(person);
+  return Dict({{Unicode("body_pose"), archive->Tensor(Floats(RowMatrixXd(person.poses.middleCols(3, 63))), {n, 63})},
+               {Unicode("betas"), archive->Tensor(BetasOfFrames(person), {n, static_cast<int>(person.betas.size())})},
+               {Unicode("global_orient"), archive->Tensor(Floats(RowMatrixXd(person.poses.leftCols(3))), {n, 3})},
+               {Unicode("transl"), archive->Tensor(Floats(person.trans), {n, 3})}});
+}
+
+/// One person in all frames, pinhole cameras.
+inline std::string GvhmrFile(const PersonEstimate& person) {
+  TensorArchive archive;
+  const std::string global = SmplxParameters(person, &archive), incam = SmplxParameters(person, &archive);
+  return archive.Finish(Dict({{Unicode("smpl_params_global"), global},
+                              {Unicode("smpl_params_incam"), incam},
+                              {Unicode("K_fullimg"), archive.K(person)},
+                              {Unicode("net_outputs"), Dict({{Unicode("none"), "N"}})}}));
+}
+
+/// The same of GEM-SMPL, with the other entries of its files; the motion in the world is another.
+inline std::string GemFile(const PersonEstimate& person) {
+  TensorArchive archive;
+  PersonEstimate world = person;
+  world.trans.array() += 7;
+  const std::string global = SmplxParameters(world, &archive), incam = SmplxParameters(person, &archive);
+  const std::string segment = Dict({{Unicode("type"), Unicode("video")}, {Unicode("start"), Int(0)}});
+  return archive.Finish(
+      Dict({{Unicode("body_params_global"), global},
+            {Unicode("body_params_incam"), incam},
+            {Unicode("net_outputs"), Dict({{Unicode("pred_body_params_incam"), SmplxParameters(world, &archive)}})},
+            {Unicode("K_fullimg"), archive.K(person)},
+            {Unicode("segment_info"), "](" + segment + "e"}}));
+}
+
+/// GEM-X's: `soma` L×231, axis-angle of the Hips and SOMA's 76 other joints.
+inline std::string GemXFile(const PersonEstimate& person, const RowMatrixXd& soma) {
+  TensorArchive archive;
+  const int n = Count(person);
+  const auto parameters = [&](const RowMatrixXd& pose) {
+    return Dict({{Unicode("global_orient"), archive.Tensor(Floats(RowMatrixXd(pose.leftCols(3))), {n, 3})},
+                 {Unicode("body_pose"), archive.Tensor(Floats(RowMatrixXd(pose.rightCols(228))), {n, 228})},
+                 {Unicode("transl"), archive.Tensor(Floats(person.trans), {n, 3})},
+                 {Unicode("identity_coeffs"), archive.Tensor(std::vector<float>(size_t(45 * n), 0.1F), {n, 45})},
+                 {Unicode("scale_params"), archive.Tensor(std::vector<float>(size_t(68 * n), 0.2F), {n, 68})}});
   };
-  const std::string object = Dict({{Unicode("smpl_params_global"), parameters()},
-                                   {Unicode("smpl_params_incam"), parameters()},
-                                   {Unicode("K_fullimg"), tensor(k, {n, 3, 3})},
-                                   {Unicode("net_outputs"), Dict({{Unicode("none"), "N"}})}});
-  return torch_stream::Archive(object, storages);
+  const std::string global = parameters(0.5 * soma), incam = parameters(soma);
+  return archive.Finish(Dict({{Unicode("body_params_global"), global},
+                              {Unicode("body_params_incam"), incam},
+                              {Unicode("K_fullimg"), archive.K(person)}}));
+}
+
+/// SOMA's joints in the places of SMPL's first 22.
+inline const std::vector<int>& SomaJoints() {
+  static const std::vector<int> joints = {0,
+                                          67 /* LeftLeg */,
+                                          72 /* RightLeg */,
+                                          1 /* Spine1 */,
+                                          68 /* LeftShin */,
+                                          73 /* RightShin */,
+                                          2 /* Spine2 */,
+                                          69 /* LeftFoot */,
+                                          74 /* RightFoot */,
+                                          3 /* Chest */,
+                                          70 /* LeftToeBase */,
+                                          75 /* RightToeBase */,
+                                          4 /* Neck1 */,
+                                          11 /* LeftShoulder */,
+                                          39 /* RightShoulder */,
+                                          6 /* Head */,
+                                          12 /* LeftArm */,
+                                          40 /* RightArm */,
+                                          13 /* LeftForeArm */,
+                                          41 /* RightForeArm */,
+                                          14 /* LeftHand */,
+                                          42 /* RightHand */};
+  return joints;
+}
+
+/// SMPL's pose on SOMA's joints, others at rest: L×231.
+inline RowMatrixXd SomaPose(const PersonEstimate& person) {
+  RowMatrixXd soma = RowMatrixXd::Zero(person.poses.rows(), 231);
+  for (size_t j = 0; j < SomaJoints().size(); ++j) {
+    soma.middleCols(3 * SomaJoints()[j], 3) = person.poses.middleCols(3 * Eigen::Index(j), 3);
+  }
+  return soma;
+}
+
+/// PromptHMR's results of frames loaded at this size, with other entries of them. `as_matrices`: without `pose`.
+inline std::string PromptHmrFile(const std::vector<PersonEstimate>& people, int width, int height, float focal_px,
+                                 bool as_matrices = false) {
+  JoblibStream stream;
+  stream.Add("}(" + Unicode("camera") + "}(" + Unicode("pred_cam_R"));
+  stream.AddFloats(std::vector<float>(9, 0.5F), {1, 3, 3});
+  stream.Add(Unicode("img_focal")).AddFloats({focal_px}, {});
+  stream.Add(Unicode("img_center")).AddFloats({0.5F * float(width), 0.5F * float(height)}, {2});
+  stream.Add("u" + Unicode("has_slam") + "\x88" + Unicode("masks") + "N" + Unicode("people") + "}(");
+  for (const PersonEstimate& person : people) {
+    const int n = Count(person);
+    RowMatrixXd pose = RowMatrixXd::Zero(n, 165);
+    pose.leftCols(66) = person.poses.leftCols(66);
+    std::vector<float> matrices;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < 55; ++j) {
+        const Eigen::Matrix3d matrix = RotationFromAxisAngle(pose.row(i).segment<3>(3 * j).transpose());
+        for (const float value : Floats(matrix)) matrices.push_back(value);
+      }
+    }
+    stream.Add(Int(std::stoi(person.name)) + "}(" + Unicode("track_id") + Int(1) + Unicode("frames"));
+    stream.AddInts(FrameIds(person)).Add(Unicode("smplx_cam") + "}(" + Unicode("rotmat"));
+    stream.AddFloats(matrices, {n, 55, 3, 3});
+    if (!as_matrices) stream.Add(Unicode("pose")).AddFloats(Floats(RowMatrixXd(pose.leftCols(75))), {n, 75});
+    stream.Add(Unicode("shape")).AddFloats(BetasOfFrames(person), {n, static_cast<int>(person.betas.size())});
+    stream.Add(Unicode("trans")).AddFloats(Floats(person.trans), {n, 3}).Add("u");
+    stream.Add(Unicode("smplx_world") + "}(" + Unicode("trans"));
+    stream.AddFloats(std::vector<float>(size_t(3 * n), 9.0F), {n, 3}).Add("uu");
+  }
+  return stream.Add("uu").Finish();
 }
 
 /// A person in these frames, with different poses of every joint, about `depth_m` from the camera.

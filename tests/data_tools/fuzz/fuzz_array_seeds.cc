@@ -3,6 +3,7 @@
 
 #include <matio.h>
 
+#include <cmath>
 #include <memory>
 
 #include "data_tools/avatar/avatar_file.h"
@@ -20,6 +21,7 @@
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_writer.h"
+#include "tests/data_tools/datasets/still_camera_files.h"
 #include "tests/data_tools/datasets/video_truth_files.h"
 #include "tests/data_tools/estimates/estimate_files.h"
 #include "tests/data_tools/formats/pickle_writer.h"
@@ -187,8 +189,38 @@ void WriteThreeFrames(const std::string& path) {
   writer.Finish();
 }
 
-/// WHAM's and VIBE's results (PHALP's are compressed, which no mutation survives; here they are not) and GVHMR's
-/// tensors.
+/// SAM 3D Body's 70 points, 2 m away, seen by a camera of 640×480 pixels.
+RowMatrixXd MhrPoints() {
+  RowMatrixXd points(70, 3);
+  for (int k = 0; k < 70; ++k) points.row(k) << 0.3 * std::sin(k), 0.02 * k - 0.7, 0.1 * std::cos(2.0 * k);
+  return points;
+}
+
+std::string Sam3dBodyJson() {
+  RowMatrixXd points = MhrPoints(), pixels(70, 2);
+  for (int k = 0; k < 70; ++k) {
+    pixels.row(k) = 500 / (points(k, 2) + 2) * points.row(k).head<2>() + Eigen::RowVector2d(320, 240);
+  }
+  return "[{\"pred_keypoints_3d\": " + JsonRows(points) + ", \"pred_keypoints_2d\": " + JsonRows(pixels) +
+         ", \"pred_cam_t\": [0, 0, 2], \"focal_length\": 500}]";
+}
+
+/// Two frames of SAM3DBody-cpp.
+std::string Sam3dBodyCsv() {
+  std::string text = "frame,skeleton_id,nose_x,nose_y,nose_z";
+  for (int k = 1; k < 70; ++k) {
+    for (const char* axis : {"_x", "_y", "_z"}) text += ",p" + std::to_string(k) + axis;
+  }
+  const RowMatrixXd points = MhrPoints();
+  for (const char* row : {"\n1,0", "\n2,0"}) {
+    text += row;
+    for (Eigen::Index i = 0; i < points.size(); ++i) text += "," + std::to_string(points.data()[i]);
+  }
+  return text + "\n";
+}
+
+/// WHAM's, VIBE's and PromptHMR's results (PHALP's are compressed, which no mutation survives; here they are not),
+/// GVHMR's and GEM's tensors, SAM 3D Body's texts.
 std::vector<std::string> EstimateSeeds() {
   using namespace estimate_files;  // NOLINT(google-build-using-namespace)
   Camera camera = MakePinhole(640, 480, 800);
@@ -202,8 +234,21 @@ std::vector<std::string> EstimateSeeds() {
   gvhmr["K_fullimg"] = NdArray::FromDoubles(k.data(), {1, 3, 3});
   camera.model = CameraModel::kWeakPerspective;
   camera.scale = 200;
-  return {WhamFile({person}), VibeFile({MakePerson("1", {0, 2}, camera, {0, 0, 0})}),
-          Inflate(PhalpFile({person}, 3), "seed.pkl", size_t{1} << 20), FrameArrays(gvhmr)};
+  NpzArrays gem_x;
+  const std::vector<double> soma(228, 0.1);
+  gem_x["body_params_incam.body_pose"] = NdArray::FromDoubles(soma.data(), {1, 228});
+  for (const char* key : {"global_orient", "transl"}) {
+    gem_x[std::string("body_params_incam.") + key] = NdArray::FromDoubles(values.data(), {1, 3});
+  }
+  gem_x["K_fullimg"] = gvhmr["K_fullimg"];
+  return {WhamFile({person}),
+          VibeFile({MakePerson("1", {0, 2}, camera, {0, 0, 0})}),
+          Inflate(PhalpFile({person}, 3), "seed.pkl", size_t{1} << 20),
+          FrameArrays(gvhmr),
+          PromptHmrFile({person}, 640, 480, 700),
+          FrameArrays(gem_x),
+          Sam3dBodyJson(),
+          Sam3dBodyCsv()};
 }
 
 /// Two people of two frames whose camera moves, in the form of either data set.
@@ -216,6 +261,15 @@ std::vector<std::string> VideoTruthSeeds() {
   track.camera_from_scene.resize(2);
   const std::vector<uint8_t> good = {1, 0};
   return {EmdbPickle(track, good, "male"), ThreeDpwPickle({track, track}, {good, good})};
+}
+
+/// A motion of two frames, of 66 columns of which the rest is 0.
+Motion TwoPoses() {
+  Motion motion;
+  motion.poses = RowMatrixXd::Constant(2, 72, 0.1);
+  motion.trans = MatrixX3d::Constant(2, 3, 0.5);
+  motion.betas = Eigen::VectorXd::Constant(10, 0.25);
+  return motion;
 }
 
 /// positions_2d and metadata of a set of one video, one after the other.
@@ -267,6 +321,11 @@ void AddArraySeeds(std::map<std::string, std::vector<std::string>>* seeds) {
   (*seeds)["detections_file"].push_back((*seeds)["deeplabcut"][0]);
   (*seeds)["estimate"] = EstimateSeeds();
   (*seeds)["video_truth"] = VideoTruthSeeds();
+  (*seeds)["rich"] = {RichXml(RoomCamera()), RichPickle(TwoPoses(), 0)};
+  const std::vector<MatrixX3d> joints(2, MatrixX3d::Constant(17, 3, 0.5));
+  (*seeds)["human36m"] = {Human36mJointsJson(joints), Human36mSmplJson(TwoPoses(), 1),
+                          pickle_writer::Pickle(2, Human36mPositions(joints))};
+  (*seeds)["cameras"].push_back(Human36mCameraJson(RoomCamera(), false));
   Image image(6, 4, {12, 200, 3});
   (*seeds)["image"] = {BytesOf("image.png", [&](const std::string& path) { WriteImage(path, image); }),
                        BytesOf("image.jpg", [&](const std::string& path) { WriteImage(path, image); })};

@@ -36,6 +36,8 @@ TEST(FuzzCorpus, Motion) { RunMutations("motion", AcceptsMotion, 4000); }
 TEST(FuzzCorpus, DetectionsFile) { RunMutations("detections_file", AcceptsDetectionsFile, 4000); }
 TEST(FuzzCorpus, Estimate) { RunMutations("estimate", AcceptsEstimate, 4000); }
 TEST(FuzzCorpus, VideoTruth) { RunMutations("video_truth", AcceptsVideoTruth, 4000); }
+TEST(FuzzCorpus, Rich) { RunMutations("rich", AcceptsRich, 4000); }
+TEST(FuzzCorpus, Human36m) { RunMutations("human36m", AcceptsHuman36m, 4000); }
 TEST(FuzzCorpus, Image) { RunMutations("image", AcceptsImage, 500); }
 TEST(FuzzCorpus, Video) { RunMutations("video", AcceptsVideo, 300); }
 TEST(FuzzCorpus, SinglePersonDataset) { RunMutations("single_person_dataset", AcceptsSinglePersonDataset, 1000); }

@@ -7,6 +7,7 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "geometry/math/rotation.h"
+#include "tests/data_tools/datasets/still_camera_files.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/support/paths.h"
@@ -135,6 +136,25 @@ TEST_F(LoadCamerasTest, Pose2SimToml) {
     } catch (const std::runtime_error&) {
     }
   }
+}
+
+TEST_F(LoadCamerasTest, Human36mWithCentreOrTranslation) {
+  const NamedCamera expected = RoomCamera();
+  for (const bool is_centre : {true, false}) {
+    const std::vector<NamedCamera> cameras = LoadCameras(Write("c.json", Human36mCameraJson(expected, is_centre)));
+    ASSERT_EQ(cameras.size(), 1U);
+    EXPECT_EQ(cameras[0].name, "1");
+    EXPECT_EQ(cameras[0].camera.height, 1002);
+    EXPECT_TRUE(cameras[0].has_pose);
+    EXPECT_TRUE(cameras[0].camera.K().isApprox(expected.camera.K(), 1e-12));
+    EXPECT_TRUE(cameras[0].pose.camera_from_world_rotation.isApprox(expected.pose.camera_from_world_rotation, 1e-9));
+    EXPECT_TRUE(
+        cameras[0].pose.camera_from_world_translation.isApprox(expected.pose.camera_from_world_translation, 1e-9));
+  }
+  NamedCamera away = expected;
+  away.pose.camera_from_world_translation.x() += 50;
+  EXPECT_THAT(ErrorOf(Human36mCameraJson(away, false)), HasSubstr("expected a camera that shows the origin"));
+  EXPECT_THAT(ErrorOf(R"({"1": {"R": [1], "f": [1, 1]}})"), HasSubstr("1: no 'c'"));
 }
 
 TEST_F(LoadCamerasTest, OwnFormRoundTrip) {

@@ -5,7 +5,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "data_tools/video/frame_image.h"
+#include "data_tools/video/image_file.h"
+#include "data_tools/video/video_reader.h"
+#include "pipelines/detect/detect_clip.h"
+#include "pipelines/photo_avatar/make_photo_person.h"
+#include "pipelines/track/chosen_people.h"
+#include "tests/support/paths.h"
+#include "tests/support/real_video.h"
+#include "tests/support/scratch_folder.h"
 
 namespace bodyloom::upright_people_test {
 namespace {
@@ -50,6 +63,59 @@ TEST(UprightPeople, AdviceWhereMostLie) {
   EXPECT_EQ(AdviceOnTurn(Clip({Turned(0), Turned(10)})), "");
   EXPECT_EQ(AdviceOnTurn(Clip({Turned(90, 0.2F)})), "") << "hardly seen";
   EXPECT_EQ(AdviceOnTurn(Clip({})), "");
+}
+
+TEST(UprightPeople, AdviceIsSaidOfTheVideo) {
+  std::vector<std::string> said;
+  PipelineCallbacks callbacks;
+  callbacks.message = [&](const std::string& line) { said.push_back(line); };
+  SayAdviceOnTurn("a.mp4", Clip({Turned(0)}), callbacks);
+  EXPECT_THAT(said, ::testing::IsEmpty());
+  SayAdviceOnTurn("a.mp4", Clip({Turned(90)}), callbacks);
+  EXPECT_THAT(said, ::testing::ElementsAre("a.mp4: " + AdviceOnTurn(Clip({Turned(90)}))));
+}
+
+/// A woman who squats, turned by 90 degrees. Skipped where the recording or the networks (./dev models) are missing.
+class PeopleOnTheirSide : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string why = WhyNoDetection(video_); !why.empty()) GTEST_SKIP() << why;
+    callbacks_.message = [this](const std::string& line) { said_ += line + "\n"; };
+  }
+
+  const std::string video_ = SharedDir() + "/data/tfjs_pose/pose_squats.mp4";
+  const ScratchFolder folder_;
+  PipelineCallbacks callbacks_;
+  std::string said_;
+};
+
+TEST_F(PeopleOnTheirSide, InAVideoTheTurnIsAdvised) {
+  DetectClipRequest request;
+  request.detect.video = video_;
+  request.detect.span.to_s = 0.3;
+  request.detect.span.turn_deg = 90;
+  request.out = folder_ / "detections.npz";
+  DetectClip(request, callbacks_);
+  EXPECT_THAT(said_, HasSubstr("pose_squats.mp4: most people lie on their side"));
+  said_.clear();
+  TrackPeopleRequest tracked;
+  tracked.track.video = video_;
+  tracked.track.to_s = 0.3;
+  tracked.track.turn_deg = 90;
+  DetectAndChoosePeople(tracked, callbacks_);
+  EXPECT_THAT(said_, HasSubstr("--rotate auto"));
+}
+
+TEST_F(PeopleOnTheirSide, NotOfAPhotoWhichNoOptionTurns) {
+  Image frame;
+  VideoReader(video_).Read(&frame);
+  WriteImage(folder_ / "photo.png", Oriented(frame, ClockwiseTurn(90)));
+  StageClock clock;
+  std::shared_ptr<const BodyModel> body;
+  PhotoFitSettings settings;
+  const FittedPhoto photo = FitPhoto(settings, folder_ / "photo.png", callbacks_, &clock, &body);
+  EXPECT_EQ(photo.people, 1);
+  EXPECT_THAT(said_, ::testing::Not(HasSubstr("--rotate")));
 }
 
 }  // namespace

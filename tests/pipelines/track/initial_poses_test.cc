@@ -137,6 +137,24 @@ TEST_F(InitialPosesTest, TheTrackedPersonOfAllSystemsInTheCamerasOfAllSystems) {
   EXPECT_EQ(gvhmr.system, "GVHMR");
   ExpectTruth(gvhmr, all);
 
+  const PersonEstimate smplx = TruePerson("smplx", all, own_);
+  const InitialPoses gem = Read(Write("smpl_params.pt", GemFile(smplx)));
+  EXPECT_EQ(gem.system, "GEM");
+  ExpectTruth(gem, all);
+
+  PersonEstimate hips = smplx;  // whose translation is that of the hips
+  hips.trans.rowwise() += MeanPelvis("smplx").transpose();
+  const InitialPoses gem_x = Read(Write("hpe_results.pt", GemXFile(hips, SomaPose(hips))));
+  EXPECT_EQ(gem_x.system, "GEM-X");
+  ExpectTruth(gem_x, all);
+
+  const std::vector<PersonEstimate> two = {other, TruePerson("smplx", some, own_)};
+  const InitialPoses prompthmr =
+      Read(Write("results.pkl", PromptHmrFile(two, own_.width / 2, own_.height / 2, float(own_.fx / 2))));
+  EXPECT_EQ(prompthmr.system, "PromptHMR");
+  EXPECT_EQ(prompthmr.person, "5");
+  ExpectTruth(prompthmr, some);
+
   const InitialPoses track = Read(clip_.truth);
   EXPECT_EQ(track.system, "track");
   EXPECT_TRUE(track.has_shape);
@@ -221,6 +239,43 @@ TEST(Sam3dBody, AStartOfLandmarksAlone) {
   EXPECT_LT(gain.fit_px.median, 15) << "of a person 700 px high";
   EXPECT_LT(gain.joint_mm.median, 100);
   EXPECT_THAT(ToText(report), HasSubstr("start    SAM 3D Body, person 0, 1 of 1 frames; 3D landmarks alone\n"));
+}
+
+// The real people as SAM3DBody-cpp writes them: landmarks without a place, in one list.
+TEST(Sam3dBody, SkeletonsWithoutAPlaceStandWhereTheDetectionsAre) {
+  const std::string folder = SharedDir() + "/data/mhr_sam3d/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared/data/mhr_sam3d beside the repository";
+  const ScratchFolder scratch;
+  const std::string path = scratch / "points.csv";
+  std::string text = "frame,skeleton_id,nose_x,nose_y,nose_z";
+  for (int k = 3; k < 3 * 70; ++k) text += ",c";
+  KeypointSequence joints;
+  joints.names = CocoNames();
+  joints.timestamps = {0};
+  for (const int person : {0, 1}) {
+    const NpzArrays arrays = ReadNpz(folder + "img_subj0" + std::to_string(person) + ".npz");
+    text += "\n1," + std::to_string(person);
+    for (const double value : arrays.at("pred_keypoints_3d").ToDoubles()) text += "," + std::to_string(value);
+    if (person == 0) continue;
+    const RowMatrixXd pixels = arrays.at("pred_keypoints_2d").ToMatrix();
+    for (const int k : {0, 1, 2, 3, 4, 5, 6, 7, 8, 62, 41, 9, 10, 11, 12, 13, 14}) {
+      joints.points.push_back({static_cast<float>(pixels(k, 0)), static_cast<float>(pixels(k, 1)), 0.9F});
+    }
+  }
+  WriteFileAtomically(path, text + "\n");
+  InitialPosesRequest request;
+  request.path = path;
+  request.body = &BuiltinBody();
+  request.camera = CentredCamera(1920, 890, 2535.266);
+  request.num_frames = 1;
+  EXPECT_THAT(FileErrorOf(path, [&] { ReadInitialPoses(request); }), HasSubstr("give 2D joints, too"));
+  request.keypoints = &joints;
+  const InitialPoses placed = ReadInitialPoses(request);
+  request.path = folder + "img_subj01.npz";
+  const InitialPoses written = ReadInitialPoses(request);
+  ASSERT_EQ(placed.frames, 1);
+  EXPECT_EQ(placed.system, "SAM3DBody-cpp");
+  EXPECT_LT((placed.landmarks[0] - written.landmarks[0]).rowwise().norm().maxCoeff(), 1e-3);
 }
 
 }  // namespace
