@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 #include "geometry/base/check.h"
 
@@ -51,7 +50,7 @@ Refined RefineByHeatmap(std::span<const float> heatmaps, int k, const Eigen::Vec
 class MaskSampler {
  public:
   explicit MaskSampler(std::span<const float> logits)
-      : logits_(logits), values_(size_t{kSide} * kSide, 0.0F), distance_(size_t{kSide} * kSide, kFarthest) {
+      : logits_(logits), values_(size_t{kSide} * kSide, 0.0F), distance_(size_t{kSide} * kSide) {
     for (int y = 0; y < kSize; ++y) std::fill_n(&values_[size_t(y + 1) * kSide + 1], kSize, kNotYet);
     FindSides();
     FindDistances();
@@ -80,7 +79,7 @@ class MaskSampler {
   /// One pixel of zeros before the mask, two behind, to which positions outside are clamped.
   static constexpr int kSize = kPoseNetworkSize, kSide = kSize + 3, kCells = kSide - 1;
   static constexpr float kNotYet = -1;
-  static constexpr uint8_t kBothSides = 2, kFarthest = 255;
+  static constexpr uint8_t kBothSides = 2, kFarthest = 200;  // cells
   struct Place {
     size_t cell;
     float ax, ay;
@@ -124,26 +123,30 @@ class MaskSampler {
     }
   }
 
-  /// Of each cell, in cells along rows, columns and diagonals: to the nearest one that has both sides.
+  /// Of each cell, in cells along rows, columns and diagonals: to the nearest one that has both sides. A pass down
+  /// finds the nearest above and to the left, one up those below and to the right. A row has a byte more than cells,
+  /// which is never nearer.
   void FindDistances() {
-    const auto relax = [this](size_t i, std::initializer_list<size_t> neighbours) {
-      uint8_t least = distance_[i];
-      for (const size_t k : neighbours)
-        least = std::min(least, uint8_t(std::min<int>(distance_[k], kFarthest - 1) + 1));
-      distance_[i] = sides_[i] == kBothSides ? 0 : least;
-    };
-    constexpr size_t kLast = size_t{kCells} * kSide;
-    for (size_t i = 1; i < kLast; ++i) {
-      if (i < kSide) {
-        relax(i, {i - 1});
-      } else if (i % kSide == 0) {
-        relax(i, {i - kSide, i - kSide + 1});
-      } else {
-        relax(i, {i - 1, i - kSide - 1, i - kSide, i - kSide + 1});
+    for (size_t i = 0; i < distance_.size(); ++i) distance_[i] = sides_[i] == kBothSides ? 0 : kFarthest;
+    for (int row = 0; row < kCells; ++row) PassRow(row, row - 1, 1);
+    for (int row = kCells; row-- > 0;) PassRow(row, row + 1 < kCells ? row + 1 : -1, -1);
+  }
+
+  /// Distances in a row by way of another row (none: −1) and of the cell that comes before in this direction.
+  void PassRow(int row, int other, int direction) {
+    uint8_t* here = &distance_[size_t(row) * kSide];
+    if (other >= 0) {
+      const uint8_t* there = &distance_[size_t(other) * kSide];
+      for (int i = 0; i < kCells; ++i) {
+        const uint8_t nearest = std::min({there[std::max(i - 1, 0)], there[i], there[i + 1]});
+        here[i] = std::min<uint8_t>(here[i], nearest + 1);
       }
     }
-    for (size_t i = kLast; i-- > 0;) {
-      if (i % kSide < kCells) relax(i, {i + 1, i + kSide, i + kSide + 1, i % kSide == 0 ? i + kSide : i + kSide - 1});
+    int last = kFarthest;
+    for (int k = 0; k < kCells; ++k) {
+      const int i = direction > 0 ? k : kCells - 1 - k;
+      last = std::min<int>(here[i], last + 1);
+      here[i] = uint8_t(last);
     }
   }
 

@@ -39,22 +39,17 @@ std::vector<T> Thinned(const std::vector<T>& items, size_t n) {
   return result;
 }
 
-/// The parts that a row of a visibility buffer shows; the background is 0.
-void ReadPartsSeen(const int32_t* faces, int width, const std::vector<uint8_t>& part_of_face, uint8_t* parts) {
-  int last = -1;
-  uint8_t part = kBackground;
-  for (int i = 0; i < width; ++i) {
-    if (i + 8 <= width && SeeNothing(faces + i)) {
+/// The parts that a row of a visibility buffer shows; `part_of_seen` has the background's before those of the faces.
+void ReadPartsSeen(const int32_t* faces, int width, const std::vector<uint8_t>& part_of_seen, uint8_t* parts) {
+  int i = 0;
+  for (; i + 8 <= width; i += 8) {
+    if (SeeNothing(faces + i)) {
       std::fill_n(parts + i, 8, kBackground);
-      i += 7;
-      continue;
+    } else {
+      for (int k = i; k < i + 8; ++k) parts[k] = part_of_seen[size_t(faces[k] + 1)];
     }
-    if (faces[i] != last) {
-      last = faces[i];
-      part = last < 0 ? kBackground : part_of_face[size_t(last)];
-    }
-    parts[i] = part;
   }
+  for (; i < width; ++i) parts[i] = part_of_seen[size_t(faces[i] + 1)];
 }
 
 /// True for one part for the whole person, which includes clothes and hair.
@@ -197,11 +192,13 @@ std::vector<PartLabelMatches::Edge> PartLabelMatches::EdgesOfBody(const std::vec
   const int width = box.width();
   std::array<std::vector<uint8_t>, 3> rows;
   for (std::vector<uint8_t>& row : rows) row.assign(size_t(width) + 2, kBackground);
+  std::vector<uint8_t> part_of_seen(1, kBackground);
+  part_of_seen.insert(part_of_seen.end(), part_of_face.begin(), part_of_face.end());
   const auto read = [&](int y, std::vector<uint8_t>* row) {
     if (y >= box.y_end) {
       std::fill(row->begin(), row->end(), kBackground);
     } else {
-      ReadPartsSeen(&buffer.faces()[box.IndexOf(box.x_begin, y)], width, part_of_face, row->data() + 1);
+      ReadPartsSeen(&buffer.faces()[box.IndexOf(box.x_begin, y)], width, part_of_seen, row->data() + 1);
     }
   };
   auto& [above, here, below] = rows;
