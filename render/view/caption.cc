@@ -2,8 +2,12 @@
 #include "render/view/caption.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <tuple>
 
 #include "render/image/image_mat.h"
 #include "render/image/palette.h"
@@ -24,16 +28,44 @@ std::string Printable(std::string text) {
 
 /// Moves `target` towards a colour by a mask of 0..255 times alpha.
 void Tint(const cv::Mat& mask, const Colour& colour, double alpha, cv::Mat target) {
+  const std::array<double, 3> wanted = {double(colour.blue), double(colour.green), double(colour.red)};
+  const auto tinted = [&wanted, alpha](uint8_t value, uint8_t share, size_t channel) {
+    const double a = alpha * share / 255;
+    return cv::saturate_cast<uint8_t>(value * (1 - a) + wanted[channel] * a);
+  };
+  std::array<std::array<uint8_t, 256>, 3> whole;  // where the mask is full, which is nearly everywhere that it is not 0
+  for (size_t channel = 0; channel < 3; ++channel) {
+    for (size_t value = 0; value < 256; ++value) whole[channel][value] = tinted(uint8_t(value), 255, channel);
+  }
   for (int y = 0; y < target.rows; ++y) {
-    for (int x = 0; x < target.cols; ++x) {
-      const double a = alpha * mask.at<uint8_t>(y, x) / 255;
-      auto& p = target.at<cv::Vec3b>(y, x);
-      p[0] = cv::saturate_cast<uint8_t>(p[0] * (1 - a) + colour.blue * a);
-      p[1] = cv::saturate_cast<uint8_t>(p[1] * (1 - a) + colour.green * a);
-      p[2] = cv::saturate_cast<uint8_t>(p[2] * (1 - a) + colour.red * a);
+    const uint8_t* share = mask.ptr<uint8_t>(y);
+    uint8_t* pixel = target.ptr<uint8_t>(y);
+    for (int x = 0; x < target.cols; ++x, pixel += 3) {
+      if (share[x] == 0) continue;
+      for (size_t channel = 0; channel < 3; ++channel) {
+        uint8_t& value = pixel[channel];
+        value = share[x] == 255 ? whole[channel][value] : tinted(value, share[x], channel);
+      }
     }
   }
 }
+
+/// Masks that were drawn lately by this thread: captions are the same from frame to frame but for a number.
+template <typename Key>
+class RecentMasks {
+ public:
+  template <typename Draw>
+  const cv::Mat& Get(const Key& key, const Draw& draw) {
+    constexpr size_t kMany = 64;
+    if (masks_.size() >= kMany && !masks_.contains(key)) masks_.clear();
+    cv::Mat& mask = masks_[key];
+    if (mask.empty()) mask = draw();
+    return mask;
+  }
+
+ private:
+  std::map<Key, cv::Mat> masks_;
+};
 
 cv::Mat Shrunk(const cv::Mat& fine) {
   cv::Mat result;
@@ -68,10 +100,14 @@ void DrawWords(const std::string& text, int x, int baseline, double cap_px, Colo
                        above + below);
   const cv::Rect seen = words & cv::Rect(0, 0, image->width, image->height);
   if (seen.empty()) return;
-  cv::Mat letters(words.height * kFine, words.width * kFine, CV_8UC1, cv::Scalar(0));
-  cv::putText(letters, Printable(text), {2 * kFine, above * kFine}, kFont, cap_px * kFine / kCapHeight, 255,
-              std::max(1, int(std::lround(cap_px * kFine / 7.5))), cv::LINE_AA);
-  Tint(Shrunk(letters)(seen - words.tl()), colour, 1, MatOf(image)(seen));
+  thread_local RecentMasks<std::tuple<std::string, double>> recent;
+  const cv::Mat& mask = recent.Get({text, cap_px}, [&] {
+    cv::Mat letters(words.height * kFine, words.width * kFine, CV_8UC1, cv::Scalar(0));
+    cv::putText(letters, Printable(text), {2 * kFine, above * kFine}, kFont, cap_px * kFine / kCapHeight, 255,
+                std::max(1, int(std::lround(cap_px * kFine / 7.5))), cv::LINE_AA);
+    return Shrunk(letters);
+  });
+  Tint(mask(seen - words.tl()), colour, 1, MatOf(image)(seen));
 }
 
 void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double height_px, Image* image) {
@@ -99,18 +135,22 @@ void DrawCaption(const std::vector<CaptionLine>& lines, Corner corner, double he
   const cv::Rect panel(right ? image->width - margin - width : margin,
                        bottom ? image->height - margin - height : margin, width, height);
   cv::Mat target = MatOf(image)(panel);
-  Tint(PanelMask(width, height, std::max(2, static_cast<int>(0.55 * cap))), kInkColour, 0.72, target);
+  const int radius = std::max(2, static_cast<int>(0.55 * cap));
+  thread_local RecentMasks<std::tuple<int, int, int>> panels;
+  Tint(panels.Get({width, height, radius}, [&] { return PanelMask(width, height, radius); }), kInkColour, 0.72, target);
 
   for (size_t i = 0; i < lines.size(); ++i) {
     const int baseline = padding + static_cast<int>(i) * step + static_cast<int>(std::lround(cap));
     int x = padding;
     if (lines[i].mark != CaptionLine::Mark::kNone) {
-      cv::Mat dot(height * kFine, width * kFine, CV_8UC1, cv::Scalar(0));
-      cv::circle(dot, cv::Point(int((x + 0.45 * cap) * kFine), int((baseline - 0.5 * cap) * kFine)),
-                 static_cast<int>(0.42 * cap * kFine), 255,
+      const int top = baseline - static_cast<int>(std::ceil(1.2 * cap)), side = static_cast<int>(std::ceil(1.6 * cap));
+      const cv::Rect around = cv::Rect(x - 2, top, side, side) & cv::Rect(0, 0, width, height);
+      cv::Mat dot(around.height * kFine, around.width * kFine, CV_8UC1, cv::Scalar(0));
+      const cv::Point centre(int((x + 0.45 * cap) * kFine), int((baseline - 0.5 * cap) * kFine));
+      cv::circle(dot, centre - around.tl() * kFine, static_cast<int>(0.42 * cap * kFine), 255,
                  lines[i].mark == CaptionLine::Mark::kDisc ? int{cv::FILLED}
                                                            : std::max(1, static_cast<int>(0.16 * cap * kFine)));
-      Tint(Shrunk(dot), lines[i].colour, 1, target);
+      Tint(Shrunk(dot), lines[i].colour, 1, target(around));
       x += static_cast<int>(std::lround(1.5 * cap));
     }
     DrawWords(lines[i].text, panel.x + x, panel.y + baseline, cap, kPaperColour, image);

@@ -42,36 +42,121 @@ Refined RefineByHeatmap(std::span<const float> heatmaps, int k, const Eigen::Vec
   return {weighted / sum / n, peak};
 }
 
-/// The network's mask as probabilities, interpolated bilinearly, 0 outside. Pixel (column, row) lies at fraction
-/// column/256, row/256 of the crop.
+/// The network's mask as probabilities, interpolated bilinearly, 0 outside, against the threshold. Pixel (column, row)
+/// lies at fraction column/256, row/256 of the crop.
+///
+/// Most cells of four pixels lie on one side of the threshold with all of them; nothing is interpolated there, and the
+/// distance to the next cell that is not so says how far.
 class MaskSampler {
  public:
-  explicit MaskSampler(std::span<const float> logits) : values_(size_t{kSide} * kSide, 0.0F) {
-    for (int y = 0; y < kSize; ++y) {
-      std::transform(&logits[size_t(y) * kSize], &logits[size_t(y) * kSize] + kSize,
-                     &values_[size_t(y + 1) * kSide + 1], [](float v) { return float(Sigmoid(v)); });
-    }
+  explicit MaskSampler(std::span<const float> logits)
+      : logits_(logits), values_(size_t{kSide} * kSide, 0.0F), distance_(size_t{kSide} * kSide) {
+    for (int y = 0; y < kSize; ++y) std::fill_n(&values_[size_t(y + 1) * kSide + 1], kSize, kNotYet);
+    FindSides();
+    FindDistances();
   }
 
-  /// Probability at a column and a row of the mask.
-  [[nodiscard]] float At(float x, float y) const {
-    x = std::clamp(x, -1.0F, float(kSize)) + 1;
-    y = std::clamp(y, -1.0F, float(kSize)) + 1;
-    const int x0 = int(x), y0 = int(y);
-    const float ax = x - float(x0), ay = y - float(y0);
-    const float* at = &values_[size_t(y0) * kSide + size_t(x0)];
-    const float upper = at[0] + ax * (at[1] - at[0]), lower = at[kSide] + ax * (at[kSide + 1] - at[kSide]);
-    return upper + ay * (lower - upper);
+  /// 1 at `count` places from `start` (column, row) on, `step` apart, where the probability reaches the threshold.
+  void ReadRow(const Eigen::Vector2f& start, const Eigen::Vector2f& step, int count, uint8_t* to) {
+    const float longest = std::max(step.cwiseAbs().maxCoeff(), 1e-6F);
+    for (int i = 0; i < count;) {
+      const float along = float(i);
+      const Place place = PlaceOf(start.x() + along * step.x(), start.y() + along * step.y());
+      const int distance = distance_[place.cell];
+      if (distance == 0) {
+        to[i++] = At(place) >= kMaskThreshold ? 1 : 0;
+        continue;
+      }
+      constexpr float kRounding = 0.01F;
+      const int more = int(std::max(0.0F, (float(distance - 1) - kRounding) / longest));
+      const int end = std::min(count, i + 1 + more);
+      std::fill(to + i, to + end, sides_[place.cell]);
+      i = end;
+    }
   }
 
  private:
   /// One pixel of zeros before the mask, two behind, to which positions outside are clamped.
-  static constexpr int kSize = kPoseNetworkSize, kSide = kSize + 3;
-  std::vector<float> values_;
+  static constexpr int kSize = kPoseNetworkSize, kSide = kSize + 3, kCells = kSide - 1;
+  static constexpr float kNotYet = -1;
+  static constexpr uint8_t kBothSides = 2, kFarthest = 200;  // cells
+  struct Place {
+    size_t cell;
+    float ax, ay;
+  };
+
+  static Place PlaceOf(float x, float y) {
+    x = std::clamp(x, -1.0F, float(kSize)) + 1;
+    y = std::clamp(y, -1.0F, float(kSize)) + 1;
+    const int x0 = int(x), y0 = int(y);
+    return {size_t(y0) * kSide + size_t(x0), x - float(x0), y - float(y0)};
+  }
+
+  float At(const Place& place) {
+    const float upper_left = Node(place.cell), lower_left = Node(place.cell + kSide);
+    const float upper = upper_left + place.ax * (Node(place.cell + 1) - upper_left);
+    const float lower = lower_left + place.ax * (Node(place.cell + kSide + 1) - lower_left);
+    return upper + place.ay * (lower - upper);
+  }
+
+  float Node(size_t i) {
+    float& value = values_[i];
+    if (value == kNotYet) value = float(Sigmoid(logits_[(i / kSide - 1) * kSize + i % kSide - 1]));
+    return value;
+  }
+
+  /// Of each cell, by the node before it in both directions.
+  void FindSides() {
+    constexpr float kClear = 1e-5F;  // a logit; nearer to 0 rounding may decide
+    std::vector<uint8_t> nodes(size_t{kSide} * kSide, 0);
+    for (int y = 0; y < kSize; ++y) {
+      const float* from = &logits_[size_t(y) * kSize];
+      uint8_t* to = &nodes[size_t(y + 1) * kSide + 1];
+      // NaN compares false.
+      for (int x = 0; x < kSize; ++x) to[x] = from[x] >= kClear ? 1 : from[x] <= -kClear ? 0 : kBothSides;
+    }
+    sides_.assign(size_t{kSide} * kSide, 0);
+    for (size_t i = 0; i < size_t{kCells} * kSide - 1; ++i) {
+      const uint8_t all = nodes[i] & nodes[i + 1] & nodes[i + kSide] & nodes[i + kSide + 1];
+      const uint8_t any = nodes[i] | nodes[i + 1] | nodes[i + kSide] | nodes[i + kSide + 1];
+      sides_[i] = all == any ? all : kBothSides;
+    }
+  }
+
+  /// Of each cell, in cells along rows, columns and diagonals: to the nearest one that has both sides. A pass down
+  /// finds the nearest above and to the left, one up those below and to the right. A row has a byte more than cells,
+  /// which is never nearer.
+  void FindDistances() {
+    for (size_t i = 0; i < distance_.size(); ++i) distance_[i] = sides_[i] == kBothSides ? 0 : kFarthest;
+    for (int row = 0; row < kCells; ++row) PassRow(row, row - 1, 1);
+    for (int row = kCells; row-- > 0;) PassRow(row, row + 1 < kCells ? row + 1 : -1, -1);
+  }
+
+  /// Distances in a row by way of another row (none: −1) and of the cell that comes before in this direction.
+  void PassRow(int row, int other, int direction) {
+    uint8_t* here = &distance_[size_t(row) * kSide];
+    if (other >= 0) {
+      const uint8_t* there = &distance_[size_t(other) * kSide];
+      for (int i = 0; i < kCells; ++i) {
+        const uint8_t nearest = std::min({there[std::max(i - 1, 0)], there[i], there[i + 1]});
+        here[i] = std::min<uint8_t>(here[i], nearest + 1);
+      }
+    }
+    int last = kFarthest;
+    for (int k = 0; k < kCells; ++k) {
+      const int i = direction > 0 ? k : kCells - 1 - k;
+      last = std::min<int>(here[i], last + 1);
+      here[i] = uint8_t(last);
+    }
+  }
+
+  std::span<const float> logits_;
+  std::vector<float> values_;  ///< kNotYet: not computed yet
+  std::vector<uint8_t> sides_, distance_;
 };
 
 LabelImage MaskInImage(std::span<const float> logits, const PoseRegion& region, int image_width, int image_height) {
-  const MaskSampler sampler(logits);
+  MaskSampler sampler(logits);
   Eigen::Array2d low = Eigen::Array2d::Constant(1e9), high = -low;
   for (const Eigen::Vector2d& corner :
        {Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(1, 1)}) {
@@ -94,11 +179,7 @@ LabelImage MaskInImage(std::span<const float> logits, const PoseRegion& region, 
   for (int y = 0; y < mask.height; ++y) {
     const Eigen::Vector2d pixel(mask.x_begin, mask.y_begin + y);
     const Eigen::Vector2f start = (kPoseNetworkSize * region.FractionFromImage(pixel)).cast<float>();
-    uint8_t* to = &mask.labels[size_t(y) * mask.width];
-    for (int x = 0; x < mask.width; ++x) {
-      const float along = float(x);
-      to[x] = sampler.At(start.x() + along * step.x(), start.y() + along * step.y()) >= kMaskThreshold ? 1 : 0;
-    }
+    sampler.ReadRow(start, step, mask.width, &mask.labels[size_t(y) * mask.width]);
   }
   return mask;
 }

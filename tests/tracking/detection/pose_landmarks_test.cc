@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace bodyloom::pose_landmarks_test {
 namespace {
@@ -117,6 +118,49 @@ TEST(PoseLandmarks, MasksComeBackToTheImageAndStayInIt) {
   }
   // A region beside the image shows nothing of it.
   EXPECT_TRUE(outputs.Decoded({.centre = {-500, 0}, .side = 100}).mask.labels.empty());
+}
+
+/// The network's mask at a place of it, by the formula.
+double ProbabilityAt(const std::vector<float>& logits, const Eigen::Vector2d& place) {
+  const auto node = [&logits](int column, int row) {
+    if (column < 0 || row < 0 || column >= 256 || row >= 256) return 0.0;
+    return 1 / (1 + std::exp(-double(logits[size_t(row) * 256 + size_t(column)])));
+  };
+  const double x = std::clamp(place.x(), -1.0, 256.0), y = std::clamp(place.y(), -1.0, 256.0);
+  const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
+  const double ax = x - x0, ay = y - y0;
+  return (1 - ay) * ((1 - ax) * node(x0, y0) + ax * node(x0 + 1, y0)) +
+         ay * ((1 - ax) * node(x0, y0 + 1) + ax * node(x0 + 1, y0 + 1));
+}
+
+TEST(PoseLandmarks, MasksOfAnyShapeFollowTheFormula) {
+  Outputs outputs;
+  outputs.mask.resize(256 * 256);
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise;
+  for (int i = 0; i < 256 * 256; ++i) {
+    const int row = i / 256, column = i % 256;
+    // Discs up to the border, a noisy quarter and pixels alone.
+    const double disc = std::sin(column * 0.05) * std::cos(row * 0.031) * 6 + 1;
+    outputs.mask[size_t(i)] = row < 128 && column < 128 ? noise(random) : i % 997 == 0 ? float(-disc) : float(disc);
+  }
+  for (const PoseRegion& region :
+       {kUpright, kTurned, PoseRegion{.centre = {300, 250}, .side = 2000, .rotation = 0.3},
+        PoseRegion{.centre = {300, 250}, .side = 90, .rotation = 1.5}, PoseRegion{.centre = {630, 5}, .side = 700}}) {
+    const LabelImage mask = outputs.Decoded(region).mask;
+    int undecided = 0;
+    for (int y = mask.y_begin; y < mask.y_begin + mask.height; ++y) {
+      for (int x = mask.x_begin; x < mask.x_begin + mask.width; ++x) {
+        const double p = ProbabilityAt(outputs.mask, 256 * region.FractionFromImage({double(x), double(y)}));
+        if (std::abs(p - 0.5) < 1e-4) {
+          ++undecided;
+        } else {
+          ASSERT_EQ(mask.At(x, y), p > 0.5 ? 1 : 0) << x << ", " << y << ": " << p;
+        }
+      }
+    }
+    EXPECT_LT(undecided, mask.width * mask.height / 100);
+  }
 }
 
 TEST(PoseLandmarks, OutputsOfAnotherNetworkAreRefused) {

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
+#include <map>
+#include <queue>
 #include <stdexcept>
 #include <utility>
 
@@ -92,9 +95,50 @@ class OnnxReader {
     if (nodes.size() > kMaxNodes)
       ThrowFileError(name_, "graph", Concatenate(nodes.size(), " nodes, expected at most ", kMaxNodes));
     ReadInputs(inputs);
-    for (size_t i = 0; i < nodes.size(); ++i) ReadNode(nodes[i], Concatenate("node ", i));
+    for (const size_t i : OrderOf(nodes)) ReadNode(nodes[i], Concatenate("node ", i));
     for (const std::string_view output : outputs) graph_.outputs.push_back(Known(Value(output).first, "outputs"));
     if (graph_.outputs.empty()) ThrowFileError(name_, "graph", "no outputs");
+  }
+
+  /// The nodes so that each follows those whose results it takes, otherwise as in the file.
+  [[nodiscard]] std::vector<size_t> OrderOf(const std::vector<std::string_view>& nodes) const {
+    std::map<std::string_view, size_t> writer;
+    std::vector<std::vector<std::string_view>> inputs(nodes.size());
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      ProtoMessage node = Message(nodes[i], Concatenate("node ", i));
+      for (ProtoField field; node.Next(&field);) {
+        if (field.number == 1) inputs[i].push_back(node.Bytes(field));
+        if (field.number == 2) writer.emplace(node.Bytes(field), i);
+      }
+    }
+    std::vector<std::vector<size_t>> readers(nodes.size());
+    std::vector<size_t> awaited(nodes.size(), 0);
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      for (const std::string_view input : inputs[i]) {
+        const auto from = writer.find(input);
+        if (input.empty() || from == writer.end()) continue;
+        readers[from->second].push_back(i);
+        ++awaited[i];
+      }
+    }
+    std::priority_queue<size_t, std::vector<size_t>, std::greater<>> ready;
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      if (awaited[i] == 0) ready.push(i);
+    }
+    std::vector<size_t> order;
+    while (!ready.empty()) {
+      order.push_back(ready.top());
+      ready.pop();
+      for (const size_t reader : readers[order.back()]) {
+        if (--awaited[reader] == 0) ready.push(reader);
+      }
+    }
+    if (order.size() < nodes.size()) {
+      const auto left = std::find_if(awaited.begin(), awaited.end(), [](size_t count) { return count > 0; });
+      ThrowFileError(name_, Concatenate("node ", left - awaited.begin()),
+                     "nodes that take each other's results in a circle, expected an order in which they can run");
+    }
+    return order;
   }
 
   void ReadInputs(const std::vector<std::string_view>& inputs) {
@@ -158,7 +202,7 @@ class OnnxReader {
     const auto at = number_.find(name);
     if (at == number_.end()) {
       ThrowFileError(name_, place,
-                     "'" + PrintableText(name) + "' is not there, expected a constant or what a node before it writes");
+                     "'" + PrintableText(name) + "' is not there, expected a constant or what another node writes");
     }
     return at->second;
   }

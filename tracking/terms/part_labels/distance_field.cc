@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "geometry/base/check.h"
+#include "geometry/base/equal_bytes.h"
 
 namespace bodyloom {
 namespace {
@@ -54,6 +56,55 @@ class LowerEnvelope {
   std::vector<double> from_;
 };
 
+/// A row of pixels as runs of one kind.
+class RowOfRuns {
+ public:
+  using Pixel = DistanceField::Pixel;
+
+  void Find(const std::vector<Pixel>& row) {
+    runs_.clear();
+    width_ = static_cast<int>(row.size());
+    const auto* bytes = reinterpret_cast<const uint8_t*>(row.data());
+    for (int begin = 0; begin < width_; begin = runs_.back().end) {
+      runs_.push_back({begin, EndOfRun(bytes, begin, width_), row[begin]});
+    }
+  }
+
+  /// found(c, pixel) for each node, at pixel c · cell_px, with the last pixel of the kind that is not behind it.
+  template <typename Found>
+  void EachLastAtOrBefore(Pixel wanted, int columns, int cell_px, const Found& found) const {
+    size_t r = 0;
+    int last = -1;
+    for (int c = 0; c < columns; ++c) {
+      const int at = std::min(c * cell_px, width_ - 1);
+      for (; runs_[r].end <= at; ++r) last = runs_[r].kind == wanted ? runs_[r].end - 1 : last;
+      const int pixel = runs_[r].kind == wanted ? at : last;
+      if (pixel >= 0) found(c, pixel);
+    }
+  }
+
+  /// The same with the first pixel of the kind that is not before the node.
+  template <typename Found>
+  void EachFirstAtOrAfter(Pixel wanted, int columns, int cell_px, const Found& found) const {
+    size_t r = runs_.size() - 1;
+    int first = -1;
+    for (int c = std::min(columns - 1, (width_ - 1) / cell_px); c >= 0; --c) {
+      const int at = c * cell_px;
+      for (; runs_[r].begin > at; --r) first = runs_[r].kind == wanted ? runs_[r].begin : first;
+      const int pixel = runs_[r].kind == wanted ? at : first;
+      if (pixel >= 0) found(c, pixel);
+    }
+  }
+
+ private:
+  struct Run {
+    int begin, end;
+    Pixel kind;
+  };
+  std::vector<Run> runs_;
+  int width_ = 0;
+};
+
 /// Catmull–Rom weights of nodes −1, 0, 1, 2 at s in [0, 1], and their derivatives.
 void CubicWeights(double s, std::array<double, 4>* w, std::array<double, 4>* d) {
   const double s2 = s * s, s3 = s2 * s;
@@ -75,21 +126,18 @@ DistanceField::DistanceField(int x_begin, int y_begin, int width, int height, in
   for (auto& kind : along) kind.assign(columns_, std::vector<float>(height, kFar));
   std::vector<Pixel> row(width);
   std::vector<Pixel> at_node(static_cast<size_t>(columns_) * rows_, Pixel::kUnknown);
+  const auto add = [&](int kind, int c, int y, int pixel) {
+    float& distance = along[kind][c][y];
+    distance = std::min(distance, static_cast<float>(std::abs(c * cell_px - pixel)));
+  };
+  RowOfRuns runs;
   for (int y = 0; y < height; ++y) {
     fill_row(y_begin + y, row.data());
+    runs.Find(row);
     for (int kind = 0; kind < 2; ++kind) {
       const Pixel wanted = kind == 0 ? Pixel::kInside : Pixel::kOutside;
-      int last = -1, x = 0;
-      for (int c = 0; c < columns_; ++c) {
-        for (; x <= std::min(c * cell_px, width - 1); ++x) last = row[x] == wanted ? x : last;
-        if (last >= 0) along[kind][c][y] = static_cast<float>(c * cell_px - last);
-      }
-      last = -1;
-      x = width - 1;
-      for (int c = columns_ - 1; c >= 0; --c) {
-        for (; x >= c * cell_px; --x) last = row[x] == wanted ? x : last;
-        if (last >= 0) along[kind][c][y] = std::min(along[kind][c][y], static_cast<float>(last - c * cell_px));
-      }
+      runs.EachLastAtOrBefore(wanted, columns_, cell_px, [&](int c, int pixel) { add(kind, c, y, pixel); });
+      runs.EachFirstAtOrAfter(wanted, columns_, cell_px, [&](int c, int pixel) { add(kind, c, y, pixel); });
     }
     if (y % cell_px != 0) continue;
     for (int c = 0; c < columns_ && c * cell_px < width; ++c) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace bodyloom {
 
 class DistanceField {
  public:
-  enum class Pixel {
+  enum class Pixel : uint8_t {
     kOutside,
     kInside,
     /// Belongs to neither: distance to the inside minus distance to the outside, so the boundary runs half way.

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "geometry/base/check.h"
+#include "geometry/base/equal_bytes.h"
+#include "render/raster/raster_simd.h"
 #include "render/raster/visible_points.h"
 #include "tracking/problem/frame_accumulator.h"
 
@@ -34,6 +37,19 @@ std::vector<T> Thinned(const std::vector<T>& items, size_t n) {
   std::vector<T> result;
   for (size_t k = 0; k < n; ++k) result.push_back(items[k * items.size() / n]);
   return result;
+}
+
+/// The parts that a row of a visibility buffer shows; `part_of_seen` has the background's before those of the faces.
+void ReadPartsSeen(const int32_t* faces, int width, const std::vector<uint8_t>& part_of_seen, uint8_t* parts) {
+  int i = 0;
+  for (; i + 8 <= width; i += 8) {
+    if (SeeNothing(faces + i)) {
+      std::fill_n(parts + i, 8, kBackground);
+    } else {
+      for (int k = i; k < i + 8; ++k) parts[k] = part_of_seen[size_t(faces[k] + 1)];
+    }
+  }
+  for (; i < width; ++i) parts[i] = part_of_seen[size_t(faces[i] + 1)];
 }
 
 /// True for one part for the whole person, which includes clothes and hair.
@@ -82,19 +98,21 @@ std::vector<uint8_t> PartLabelMatches::PartOfFaces(const BodyModel& model) const
 }
 
 void PartLabelMatches::FindBoxes(const PartMap& map) {
-  const auto grow = [](PixelBox* box, int x, int y) {
-    *box = box->empty() ? PixelBox{x, y, x + 1, y + 1}
-                        : PixelBox{std::min(box->x_begin, x), std::min(box->y_begin, y), std::max(box->x_end, x + 1),
-                                   std::max(box->y_end, y + 1)};
+  const auto grow = [](PixelBox* box, int x_begin, int x_end, int y) {
+    *box = box->empty() ? PixelBox{x_begin, y, x_end, y + 1}
+                        : PixelBox{std::min(box->x_begin, x_begin), std::min(box->y_begin, y),
+                                   std::max(box->x_end, x_end), std::max(box->y_end, y + 1)};
   };
+  const int width = map.box.width();
   for (int y = map.box.y_begin; y < map.box.y_end; ++y) {
-    for (int x = map.box.x_begin; x < map.box.x_end; ++x) {
-      const uint8_t part = map.At(x, y);
+    const uint8_t* row = &map.parts[map.box.IndexOf(map.box.x_begin, y)];
+    for (int begin = 0, end = 0; begin < width; begin = end) {
+      end = EndOfRun(row, begin, width);
+      const uint8_t part = row[begin];
       if (!IsPart(part)) continue;
-      ++num_person_pixels_;
-      ++pixels_of_part_[part];
-      grow(&boxes_[part], x, y);
-      grow(&boxes_[0], x, y);
+      num_person_pixels_ += end - begin;
+      pixels_of_part_[part] += end - begin;
+      for (PixelBox* box : {&boxes_[part], &boxes_[0]}) grow(box, map.box.x_begin + begin, map.box.x_begin + end, y);
     }
   }
 }
@@ -108,8 +126,10 @@ void PartLabelMatches::AddField(const PartMap& map, uint8_t part) {
   kind[kBackground] = Pixel::kOutside;
   if (part != kBackground) kind[part] = Pixel::kInside;
   kind[kUnknown] = Pixel::kUnknown;
+  std::vector<uint8_t> parts(size_t(box.width()));
   const auto fill_row = [&](int y, Pixel* row) {
-    for (int x = box.x_begin; x < box.x_end; ++x) *row++ = kind[map.At(x, y)];
+    map.ReadRow(y, box.x_begin, box.x_end, parts.data());
+    std::transform(parts.begin(), parts.end(), row, [&kind](uint8_t at) { return kind[at]; });
   };
   fields_.try_emplace(part, box.x_begin, box.y_begin, box.width(), box.height(), cell_px_, fill_row);
 }
@@ -118,16 +138,21 @@ void PartLabelMatches::SampleBoundary(const PartMap& map) {
   std::vector<BoundarySample> silhouette;
   std::map<std::pair<uint8_t, uint8_t>, std::vector<BoundarySample>> between;
   const PixelBox box = boxes_[0].GrownBy(1).ClippedTo(map.image);
-  const auto look = [&](int x, int y, int dx, int dy) {
-    const uint8_t here = map.At(x, y), there = map.At(x + dx, y + dy);
+  const int width = box.width();
+  std::vector<uint8_t> row(size_t(width) + 1), below(size_t(width) + 1);
+  const auto look = [&](int x, int y, uint8_t here, uint8_t there, const Vector2d& half_way) {
     if (here == there || here == kUnknown || there == kUnknown) return;
-    const BoundarySample sample{Vector2d(x + 0.5 * dx, y + 0.5 * dy), std::min(here, there), std::max(here, there)};
+    const BoundarySample sample{Vector2d(x, y) + half_way, std::min(here, there), std::max(here, there)};
     (sample.a == kBackground ? silhouette : between[{sample.a, sample.b}]).push_back(sample);
   };
-  for (int y = box.y_begin; y < box.y_end; ++y) {
-    for (int x = box.x_begin; x < box.x_end; ++x) {
-      look(x, y, 1, 0);
-      look(x, y, 0, 1);
+  map.ReadRow(box.y_begin, box.x_begin, box.x_end + 1, row.data());
+  for (int y = box.y_begin; y < box.y_end; ++y, row.swap(below)) {
+    map.ReadRow(y + 1, box.x_begin, box.x_end + 1, below.data());
+    for (int i = 0; i < width; ++i) {
+      i = FirstDifference(i, width, row.data(), row.data() + 1, below.data());
+      if (i == width) break;
+      look(box.x_begin + i, y, row[size_t(i)], row[size_t(i) + 1], {0.5, 0});
+      look(box.x_begin + i, y, row[size_t(i)], below[size_t(i)], {0, 0.5});
     }
   }
   if (options_.silhouette_weight > 0) boundary_ = Thinned(silhouette, kMaxSilhouette);
@@ -160,10 +185,30 @@ std::vector<PartLabelMatches::Edge> PartLabelMatches::EdgesOfBody(const std::vec
                                                                   const VisibilityBuffer& buffer) const {
   std::vector<Edge> edges;
   const PixelBox& box = buffer.box();
+  if (box.empty()) return edges;
   const PixelBox image{0, 0, labels_.image_width, labels_.image_height};
   constexpr std::array<std::pair<int, int>, 4> kNeighbours = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-  for (int y = box.y_begin; y < box.y_end; ++y) {
-    for (int x = box.x_begin; x < box.x_end; ++x) {
+  // The parts that three rows show, with a pixel of background on either side: pixels among their like are no edges.
+  const int width = box.width();
+  std::array<std::vector<uint8_t>, 3> rows;
+  for (std::vector<uint8_t>& row : rows) row.assign(size_t(width) + 2, kBackground);
+  std::vector<uint8_t> part_of_seen(1, kBackground);
+  part_of_seen.insert(part_of_seen.end(), part_of_face.begin(), part_of_face.end());
+  const auto read = [&](int y, std::vector<uint8_t>* row) {
+    if (y >= box.y_end) {
+      std::fill(row->begin(), row->end(), kBackground);
+    } else {
+      ReadPartsSeen(&buffer.faces()[box.IndexOf(box.x_begin, y)], width, part_of_seen, row->data() + 1);
+    }
+  };
+  auto& [above, here, below] = rows;
+  read(box.y_begin, &here);
+  for (int y = box.y_begin; y < box.y_end; ++y, above.swap(here), here.swap(below)) {
+    read(y + 1, &below);
+    for (int i = 1; i <= width; ++i) {
+      i = FirstDifference(i, width + 1, here.data(), here.data() + 1, here.data() - 1, below.data(), above.data());
+      if (i > width) break;
+      const int x = box.x_begin + i - 1;
       const int face = buffer.faces()[box.IndexOf(x, y)];
       if (face < 0) continue;
       const uint8_t part = part_of_face[face];
@@ -213,6 +258,31 @@ void PartLabelMatches::AddContour(const std::vector<Edge>& edges, const BodyMode
   }
 }
 
+const PartLabelMatches::Edge* PartLabelMatches::Nearest(const std::vector<const Edge*>& edges, const Vector2d& pixel,
+                                                        double reach_px) {
+  const auto middle =
+      std::lower_bound(edges.begin(), edges.end(), pixel.y(), [](const Edge* edge, double y) { return edge->y < y; });
+  const Edge* nearest = nullptr;
+  double best = reach_px * reach_px;
+  // Rows away from the pixel's until they are farther than the best; of equal distances the first edge counts.
+  for (auto it = middle; it != edges.end() && (*it)->y - pixel.y() <= std::sqrt(best); ++it) {
+    const double squared = (Vector2d((*it)->x, (*it)->y) - pixel).squaredNorm();
+    if (squared < best) {
+      best = squared;
+      nearest = *it;
+    }
+  }
+  for (auto it = middle; it != edges.begin() && pixel.y() - (*std::prev(it))->y <= std::sqrt(best); --it) {
+    const Edge* edge = *std::prev(it);
+    const double squared = (Vector2d(edge->x, edge->y) - pixel).squaredNorm();
+    if (squared < best || (squared == best && nearest != nullptr)) {
+      best = squared;
+      nearest = edge;
+    }
+  }
+  return nearest;
+}
+
 void PartLabelMatches::AddBoundary(const std::vector<Edge>& edges, const BodyModel& model,
                                    const VisibleSurface& surface, const Camera& camera, const Sigmas& sigmas,
                                    double reach_px) {
@@ -226,17 +296,7 @@ void PartLabelMatches::AddBoundary(const std::vector<Edge>& edges, const BodyMod
   for (const BoundarySample& sample : boundary_) {
     const bool is_silhouette = sample.a == kBackground;
     const auto it = between.find(is_silhouette ? std::pair(kBackground, kBackground) : std::pair(sample.a, sample.b));
-    const Edge* nearest = nullptr;
-    double best = reach_px * reach_px;
-    if (it != between.end()) {
-      for (const Edge* edge : it->second) {
-        const double squared = (Vector2d(edge->x, edge->y) - sample.pixel).squaredNorm();
-        if (squared < best) {
-          best = squared;
-          nearest = edge;
-        }
-      }
-    }
+    const Edge* nearest = it != between.end() ? Nearest(it->second, sample.pixel, reach_px) : nullptr;
     const DistanceField* field =
         is_silhouette ? Field(kBackground) : (nearest != nullptr ? Field(nearest->part) : nullptr);
     if (nearest == nullptr || field == nullptr) {

@@ -116,6 +116,8 @@ class PartLabelMatches {
                                               const VisibilityBuffer& buffer) const;
   void AddContour(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
                   const Camera& camera, const Sigmas& sigmas);
+  /// The nearest of edges in the order of rows within `reach_px` of a pixel; null: none.
+  static const Edge* Nearest(const std::vector<const Edge*>& edges, const Eigen::Vector2d& pixel, double reach_px);
   void AddBoundary(const std::vector<Edge>& edges, const BodyModel& model, const VisibleSurface& surface,
                    const Camera& camera, const Sigmas& sigmas, double reach_px);
   void AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model, const VisibleSurface& surface,

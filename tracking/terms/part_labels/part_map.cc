@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "geometry/base/equal_bytes.h"
+
 namespace bodyloom {
 namespace {
 
@@ -25,9 +27,10 @@ class Pieces {
       const size_t here = runs_.size();
       const uint8_t* parts = &map.parts[static_cast<size_t>(y) * width];
       for (int x = 0; x < width;) {
-        const int begin = x++;
+        const int begin = x;
+        x = EndOfRun(parts, begin, width);
         if (!IsPart(parts[begin])) continue;
-        while (x < width && IsPart(parts[x]) && (!by_part || parts[x] == parts[begin])) ++x;
+        while (!by_part && x < width && IsPart(parts[x])) x = EndOfRun(parts, x, width);
         runs_.push_back({y, begin, x, parts[begin]});
         first_.push_back(static_cast<int>(first_.size()));
       }
@@ -85,6 +88,19 @@ void RemoveSpecks(bool by_part, double speck_share, PartMap* map) {
 }
 
 }  // namespace
+
+void PartMap::ReadRow(int y, int x_begin, int x_end, uint8_t* row) const {
+  const auto fill = [&](int begin, int end, uint8_t part) {
+    begin = std::max(begin, x_begin), end = std::min(end, x_end);
+    if (begin < end) std::fill(row + (begin - x_begin), row + (end - x_begin), part);
+  };
+  fill(x_begin, x_end, PartLabelSequence::kUnknown);
+  if (y < image.y_begin || y >= image.y_end) return;
+  fill(image.x_begin, image.x_end, PartLabelSequence::kBackground);
+  const int begin = std::max(x_begin, box.x_begin), end = std::min(x_end, box.x_end);
+  if (y < box.y_begin || y >= box.y_end || begin >= end) return;
+  std::copy_n(&parts[box.IndexOf(begin, y)], end - begin, row + (begin - x_begin));
+}
 
 PartMap MakePartMap(const PartLabelSequence& labels, int t, double speck_share) {
   LabelImage image = labels.PartsOf(t);

@@ -19,6 +19,8 @@ struct PartMap {
     if (box.Contains(x, y)) return parts[box.IndexOf(x, y)];
     return image.Contains(x, y) ? PartLabelSequence::kBackground : PartLabelSequence::kUnknown;
   }
+  /// At() of the pixels (x_begin, y) to (x_end − 1, y).
+  void ReadRow(int y, int x_begin, int x_end, uint8_t* row) const;
 };
 
 /// True if `part` is neither background nor unknown.

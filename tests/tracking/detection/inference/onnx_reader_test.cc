@@ -90,6 +90,29 @@ TEST(OnnxReader, OldFilesListConstantsAmongInputs) {
   EXPECT_THAT(graph.tensors[size_t(graph.inputs[0])].shape, ElementsAre(1, 3, 4, 4));
 }
 
+TEST(OnnxReader, NodesComeInAnyOrder) {
+  Writer writer = Writer().Input("images", {1, 3, 4, 4});
+  writer.Node("Tanh", {"b"}, {"y"}).Node("Add", {"a", "a"}, {"b"}).Node("Abs", {"images"}, {"c"});
+  writer.Node("Cast", {"images"}, {"a"}).Output("y");
+  const OperatorGraph graph = ParseOnnxGraph(writer.Bytes(), "net.onnx");
+  std::vector<std::string> operators;
+  std::vector<char> written(graph.tensors.size(), 0);
+  written[size_t(graph.inputs[0])] = 1;
+  for (const GraphNode& node : graph.nodes) {
+    operators.push_back(node.op);
+    for (const int input : node.inputs) EXPECT_TRUE(written[size_t(input)]) << node.op;
+    for (const int output : node.outputs) written[size_t(output)] = 1;
+  }
+  // Of the nodes that can run the first in the file comes next.
+  EXPECT_THAT(operators, ElementsAre("Abs", "Cast", "Add", "Tanh"));
+}
+
+TEST(OnnxReader, CirclesAreRefused) {
+  EXPECT_THAT(RefusalOf(Passing().Node("Add", {"images", "b"}, {"a"}).Node("Relu", {"a"}, {"b"})),
+              HasSubstr("node 1: nodes that take each other's results in a circle"));
+  EXPECT_THAT(RefusalOf(Passing().Node("Relu", {"z"}, {"z"})), HasSubstr("node 1: nodes that take"));
+}
+
 TEST(OnnxReader, OtherFilesAreRefused) {
   const std::string tflite = TfliteWriter().Bytes();
   for (const std::string& bytes :
