@@ -76,4 +76,18 @@ void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* d
       ->needs(pose_model);
 }
 
+void AddHandsOption(CLI::App& app, HandsAndFaceChoice* choice, const std::string& group) {
+  std::map<std::string, HandsAndFaceChoice> choices;
+  for (const auto each : {HandsAndFaceChoice::kOff, HandsAndFaceChoice::kAuto, HandsAndFaceChoice::kOn}) {
+    choices[ToText(each)] = each;
+  }
+  app.add_option("--hands", *choice,
+                 "the 21 points of each hand and 68 of the face: auto where they are large enough, on however small, "
+                 "off (default: " +
+                     ToText(*choice) + ")")
+      ->transform(CLI::CheckedTransformer(choices, CLI::ignore_case).description(""))
+      ->group(group)
+      ->type_name("");
+}
+
 }  // namespace bodyloom

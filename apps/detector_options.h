@@ -20,4 +20,7 @@ void AddPlaybackOptions(CLI::App& app, std::optional<int>* turn_deg, double* cap
 /// the help.
 void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group);
 
+/// Adds --hands, in this group of the help; without it the choice stays as it is.
+void AddHandsOption(CLI::App& app, HandsAndFaceChoice* choice, const std::string& group);
+
 }  // namespace bodyloom

@@ -44,6 +44,7 @@ void AddImageSize(CLI::App& app, TrackRequest* request) {
 void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& detect) {
   TrackSettings& c = *request;
   AddDetectorOptions(app, &c.detector, &c.detect_rate, detect);
+  AddHandsOption(app, &c.detector.hands_and_faces, detect);
   AddPlaybackOptions(app, &c.turn_deg, &c.captured_fps, detect);
   app.add_flag_callback(
          "--no-mask", [&c] { c.use_mask = false; }, "do not use the person's mask")

@@ -21,6 +21,7 @@ constexpr const char* kDetectFooter =
     "Everybody in the video is found and followed by BlazePose (33 landmarks), on the processor. The networks come "
     "with\n"
     "./dev models, from --models, or from the folder that $BODYLOOM_MODELS names.\n"
+    "With --out it finds their hands and faces too, where they are large enough (--hands).\n"
     "--pose-model is YOLO-pose or RTMPose in its place, as an ONNX file of yours (docs/detection.md).\n"
     "--dense-model is DensePose as TorchScript (docs/detection.md), which needs the neural half of the program.\n"
     "Examples:\n"
@@ -77,6 +78,8 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   AddDetectorOptions(*verb, &detect.detector, &detect.detect_rate, "Options");
+  detect.detector.hands_and_faces = HandsAndFaceChoice::kAuto;
+  AddHandsOption(*verb, &detect.detector.hands_and_faces, "Options");
   AddPlaybackOptions(*verb, &parsed->turn_deg, &detect.span.captured_fps, "Options");
   verb->add_option("--from", detect.span.from_s, "begin at this second")
       ->capture_default_str()

@@ -61,17 +61,17 @@ foreach(component command neural cgal)
   endif()
 endforeach()
 
-# The pose detector's networks, where the command looks for them (tracking/detection/model_files.h), with their list.
+# The detector's networks, where the command looks for them (tracking/detection/model_files.h), with their list.
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/models.txt models REGEX "^file ")
 list(TRANSFORM models REPLACE "^file +([^ ]+) .*" "${PROJECT_SOURCE_DIR}/build/models/\\1")
-set(models_there TRUE)
+set(models_there "")
 foreach(model IN LISTS models)
-  if(NOT EXISTS ${model})
-    set(models_there FALSE)
+  if(EXISTS ${model})
+    list(APPEND models_there ${model})
   endif()
 endforeach()
 if(models_there AND TARGET bodyloom_command)
-  install(FILES ${models} ${CMAKE_CURRENT_LIST_DIR}/models.txt
+  install(FILES ${models_there} ${CMAKE_CURRENT_LIST_DIR}/models.txt
           DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/bodyloom/models COMPONENT command)
 endif()
 if(TARGET bodyloom_command)

@@ -35,6 +35,18 @@ nlohmann::ordered_json ToJson(const RoomPhysics& room) {
   return json;
 }
 
+void AddHandsAndFaces(const HandsAndFaceSummary& summary, nlohmann::ordered_json* report) {
+  if (!summary.why_not.empty()) (*report)["hands_not_looked_for"] = summary.why_not;
+  if (summary.hands.parts == 0) return;
+  const auto counts = [](const PartCounts& n) {
+    return nlohmann::ordered_json{{"looked_for", n.parts}, {"found", n.found},     {"hidden", n.hidden},
+                                  {"too_small", n.small},  {"not_seen", n.absent}, {"at_other_hand", n.elsewhere}};
+  };
+  (*report)["hands"] = counts(summary.hands);
+  (*report)["faces"] = counts(summary.faces);
+  (*report)["hands_and_faces_seconds"] = summary.seconds;
+}
+
 void WriteReport(const std::string& path, const nlohmann::ordered_json& report) {
   if (!path.empty()) WriteFileAtomically(path, report.dump(2) + "\n");
 }

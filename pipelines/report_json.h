@@ -8,6 +8,7 @@
 #include "data_tools/evaluation/room_physics.h"
 #include "geometry/base/stopwatch.h"
 #include "geometry/scene/world_frame.h"
+#include "tracking/detection/hands_and_face_detector.h"
 
 namespace bodyloom {
 
@@ -21,6 +22,10 @@ nlohmann::ordered_json ToJson(const WorldFrame& world);
 /// "ground_penetration_percent", "contact_slide_mps", "balance_measured_percent", "balance_outside_percent",
 /// "balance_p95_mm", "lean_median_deg"} (data_tools/evaluation/room_physics.h); null without frames.
 nlohmann::ordered_json ToJson(const RoomPhysics& room);
+
+/// Adds "hands": {"looked_for", "found", "hidden", "too_small", "not_seen", "at_other_hand"}, "faces": the same, and
+/// "hands_and_faces_seconds"; or "hands_not_looked_for": why. Nothing when they were not wanted.
+void AddHandsAndFaces(const HandsAndFaceSummary& summary, nlohmann::ordered_json* report);
 
 /// Writes a report, whole or not at all; an empty path: none.
 void WriteReport(const std::string& path, const nlohmann::ordered_json& report);

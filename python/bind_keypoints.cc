@@ -3,6 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "geometry/base/check.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/keypoints_object.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
 
@@ -39,7 +41,8 @@ VideoPose3D, arrays of COCO's joints and this project's own .npz. `view` names t
 `person` who is meant (0: the largest and longest in view), `fps` the frame rate of a file that does not say,
 `image_size` the images' size where it is known, `convention` the order of the joints of OpenPose, arrays and
 VideoPose3D when it should not be recognised. Joints below `min_confidence` count as missing. Broken files of a folder
-are frames without joints and logged to the logger "bodyloom".
+are frames without joints and logged to the logger "bodyloom". Hands and faces that a file holds are in the
+PersonKeypoints that it returns then.
 Raises RuntimeError naming the file, what was found and what was expected.)";
 
 std::vector<double> TimestampsFrom(const py::object& timestamps, double fps, py::ssize_t num_frames) {
@@ -79,10 +82,9 @@ std::shared_ptr<KeypointSequence> MakeKeypoints(const py::object& points, const 
   return sequence;
 }
 
-std::shared_ptr<KeypointSequence> LoadKeypoints(const Path& path, const std::string& view, int person,
-                                                std::optional<double> fps,
-                                                std::optional<std::pair<int, int>> image_size, double min_confidence,
-                                                const std::string& convention) {
+py::object LoadKeypoints(const Path& path, const std::string& view, int person, std::optional<double> fps,
+                         std::optional<std::pair<int, int>> image_size, double min_confidence,
+                         const std::string& convention) {
   LoadDetectionsOptions options;
   options.view = view;
   options.person = person;
@@ -90,12 +92,101 @@ std::shared_ptr<KeypointSequence> LoadKeypoints(const Path& path, const std::str
   std::tie(options.image_width, options.image_height) = image_size.value_or(std::pair(0, 0));
   options.min_confidence = min_confidence;
   options.convention = convention;
-  return PythonCallbacks(py::none()).Run([&](const PipelineCallbacks& callbacks) {
+  return KeypointsObject(PythonCallbacks(py::none()).Run([&](const PipelineCallbacks& callbacks) {
     std::vector<std::string> warnings;
-    auto keypoints = std::make_shared<KeypointSequence>(LoadDetections(path.string(), options, &warnings));
+    PersonDetections found = LoadPersonDetections(path.string(), options, &warnings);
     for (const std::string& warning : warnings) callbacks.Message(warning);
-    return keypoints;
+    return found;
+  }));
+}
+
+constexpr const char* kPersonKeypointsDoc = R"(Keypoints of a person whose hands or face were found too.
+
+A hand's 21 points are the wrist, then of thumb, index, middle, ring and little finger each the joint nearest to the
+wrist, the next two and the tip; a face's 68 are those of 300-W: jaw, brows, nose, eyes, lips. Left and right are the
+person's. Arrays are copies.)";
+
+/// Numbers of each frame, written by fill(frame, its numbers) where the frame has hands or a face; else `absent`.
+template <typename Fill>
+py::array FramesArray(const PersonKeypoints& person, const std::vector<py::ssize_t>& shape, float absent,
+                      const Fill& fill) {
+  size_t size = 1;
+  for (const py::ssize_t n : shape) size *= size_t(n);
+  const auto& frames = person.hands_and_face.frames;
+  std::vector<float> values(frames.size() * size, absent);
+  for (size_t t = 0; t < frames.size(); ++t) {
+    if (frames[t]) fill(*frames[t], &values[t * size]);
+  }
+  std::vector<py::ssize_t> whole = {py::ssize_t(frames.size())};
+  whole.insert(whole.end(), shape.begin(), shape.end());
+  return ArrayOwning(std::move(values), std::move(whole));
+}
+
+/// Copies a part of every hand that is there: member(hand) is an array of floats or of structures of them.
+template <typename Member>
+py::array OfHands(const PersonKeypoints& person, const std::vector<py::ssize_t>& shape, float absent,
+                  const Member& member) {
+  return FramesArray(person, shape, absent, [&](const HandsAndFace& frame, float* to) {
+    for (size_t side = 0; side < 2; ++side) {
+      if (!frame.hands[side]) continue;
+      const auto& values = member(*frame.hands[side]);
+      const auto* first = reinterpret_cast<const float*>(values.data());
+      const size_t count = sizeof(values) / sizeof(float);
+      std::copy(first, first + count, to + side * count);
+    }
   });
+}
+
+void BindPersonKeypoints(py::module_& module) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  py::class_<PersonKeypoints, KeypointSequence, std::shared_ptr<PersonKeypoints>>(module, "PersonKeypoints",
+                                                                                  kPersonKeypointsDoc)
+      .def_property_readonly(
+          "hands",
+          [](const PersonKeypoints& self) {
+            return OfHands(
+                self, {2, kHandPoints, 3}, 0, [](const auto& hand) -> const auto& { return hand.points; });
+          },
+          "(T, 2, 21, 3) float32, left hand first: x and y in pixels, confidence in [0, 1]; 0: missing.")
+      .def_property_readonly(
+          "hand_sigma_px",
+          [](const PersonKeypoints& self) {
+            return OfHands(
+                self, {2, kHandPoints}, 0, [](const auto& hand) -> const auto& { return hand.sigma_px; });
+          },
+          "(T, 2, 21) float32: standard deviation of a point along an axis, pixels; 0: not known.")
+      .def_property_readonly(
+          "hand_metres",
+          [](const PersonKeypoints& self) {
+            return OfHands(
+                self, {2, kHandPoints, 3}, kNan, [](const auto& hand) -> const auto& { return hand.metres; });
+          },
+          "(T, 2, 21, 3) float32: metres about the hand's middle, x right, y down, z away from the camera; NaN: not "
+          "known.")
+      .def_property_readonly(
+          "face",
+          [](const PersonKeypoints& self) {
+            return FramesArray(self, {kFacePoints, 3}, 0, [](const HandsAndFace& frame, float* to) {
+              if (frame.face) std::copy_n(&frame.face->points.data()->x, 3 * kFacePoints, to);
+            });
+          },
+          "(T, 68, 3) float32: x and y in pixels, confidence in [0, 1]; 0: missing.")
+      .def_property_readonly(
+          "face_sigma_px",
+          [](const PersonKeypoints& self) {
+            return FramesArray(self, {}, 0, [](const HandsAndFace& frame, float* to) {
+              if (frame.face) *to = frame.face->sigma_px;
+            });
+          },
+          "(T,) float32: standard deviation of a face's points along an axis, pixels; 0: not known.")
+      .def_property_readonly(
+          "face_depth_px",
+          [](const PersonKeypoints& self) {
+            return FramesArray(self, {kFacePoints}, kNan, [](const HandsAndFace& frame, float* to) {
+              if (frame.face) std::copy(frame.face->depth_px.begin(), frame.face->depth_px.end(), to);
+            });
+          },
+          "(T, 68) float32: relative depth of a face's points, pixels, smaller is nearer; NaN: not known.");
 }
 
 std::string KeypointsText(const KeypointSequence& keypoints) {
@@ -104,6 +195,14 @@ std::string KeypointsText(const KeypointSequence& keypoints) {
 }
 
 }  // namespace
+
+py::object KeypointsObject(PersonDetections person) {
+  if (person.hands_and_face.empty()) return py::cast(std::make_shared<KeypointSequence>(std::move(person.body)));
+  auto object = std::make_shared<PersonKeypoints>();
+  static_cast<KeypointSequence&>(*object) = std::move(person.body);
+  object->hands_and_face = std::move(person.hands_and_face);
+  return py::cast(std::move(object));
+}
 
 void BindKeypoints(py::module_& module) {
   static_assert(sizeof(Keypoint) == 3 * sizeof(float), "keypoints are seen as rows of three");
@@ -140,6 +239,7 @@ void BindKeypoints(py::module_& module) {
           "(width, height) in pixels; (0, 0) when it is not known.")
       .def("__len__", &KeypointSequence::num_frames)
       .def("__repr__", &KeypointsText);
+  BindPersonKeypoints(module);
 }
 
 }  // namespace bodyloom::python

@@ -21,6 +21,7 @@
 #include "pipelines/track/track_people_clip.h"
 #include "pipelines/track/track_people_in_videos.h"
 #include "python/bindings.h"
+#include "python/keypoints_object.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
 
@@ -43,7 +44,8 @@ out             folder that gets what the command writes: detections.npz, person
 people, person  at most so many (0: everybody); only this one; min_seconds: whoever is seen for less is left out
 detector        size of BlazePose's network: "lite", "full" or "heavy"; pose_model, box_model: networks of your own;
                 models: folder of BlazePose's (`./dev models`); detect_rate: detect so many frames a second only while
-                everybody moves slowly; mask: use people's masks
+                everybody moves slowly; mask: use people's masks; hands: "auto", "on" or "off": their points and those of
+                faces are kept in detections.npz and drawn in the overlay; tracks do not use them
 rotate          turn the video clockwise by 90, 180 or 270 degrees, or "auto", so that people are upright;
                 captured_fps: slow motion, frames a second at which it was filmed
 camera, body    objects or files
@@ -57,7 +59,8 @@ constexpr const char* kDetectDoc =
 largest, best seen and longest in view first; where a person is not seen, joints are missing. track() takes one.
 
 Arguments as of run(). Raises RuntimeError for a file that cannot be used, ValueError, Cancelled; a video that shows
-nobody gives an empty list.)";
+nobody gives an empty list. `hands`: "auto" finds hands and faces where they are large enough, "on" however small, "off"
+none; whoever has any is a PersonKeypoints.)";
 
 std::shared_ptr<TrackObject> ObjectOf(Track track, const std::string& name, const TrackSequenceSummary& summary,
                                       const std::shared_ptr<const BodyModel>& body) {
@@ -106,18 +109,20 @@ std::vector<std::shared_ptr<TrackObject>> RunPeopleInVideos(const TrackPeopleInV
   return ReadTracks(report, body);
 }
 
-std::vector<std::shared_ptr<KeypointSequence>> Detect(DetectPeopleRequest request, bool find_turn,
-                                                      const py::object& progress) {
-  return PythonCallbacks(progress).Run([&](const PipelineCallbacks& callbacks) {
+py::list Detect(DetectPeopleRequest request, bool find_turn, const py::object& progress) {
+  std::vector<PersonDetections> people = PythonCallbacks(progress).Run([&](const PipelineCallbacks& callbacks) {
     if (find_turn) request.span.turn_deg = FindTurn(request, callbacks);
     const DetectedClip clip = DetectPeople(request, callbacks);
     SayAdviceOnTurn(request.video, clip.people, callbacks);
-    std::vector<std::shared_ptr<KeypointSequence>> people;
+    std::vector<PersonDetections> found;
     for (const PersonTrack& person : LinkPeople(clip.people)) {
-      people.push_back(std::make_shared<KeypointSequence>(KeypointsOf(clip.people, person)));
+      found.push_back({KeypointsOf(clip.people, person), HandsAndFaceOf(clip.people, person)});
     }
-    return people;
+    return found;
   });
+  py::list objects;
+  for (PersonDetections& person : people) objects.append(KeypointsObject(std::move(person)));
+  return objects;
 }
 
 }  // namespace
@@ -133,8 +138,8 @@ void BindPeople(py::module_& module) {
          const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
          const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
          std::optional<double> end_s, const TurnArgument& rotate, std::optional<double> captured_fps,
-         const std::string& solver, int threads, bool uncertainty, bool ground, bool overlay, bool side_view,
-         bool masks, bool coarse_masks, bool report, const py::object& progress) {
+         const std::string& hands, const std::string& solver, int threads, bool uncertainty, bool ground, bool overlay,
+         bool side_view, bool masks, bool coarse_masks, bool report, const py::object& progress) {
         BODYLOOM_CHECK(people >= 0 && person.value_or(0) >= 0 && min_seconds >= 0,
                        "people, person, min_seconds: expected 0 or more");
         BODYLOOM_CHECK(out || !(side_view || masks || report),
@@ -156,6 +161,7 @@ void BindPeople(py::module_& module) {
         track.stature_m = PositiveOr0(stature_m, "stature_m");
         track.prior = TextOf(prior), track.lifter = TextOf(lifter);
         track.detector = DetectorFrom(detector, pose_model, box_model, models);
+        track.detector.hands_and_faces = HandsAndFaceChoiceNamed(hands);
         track.detect_rate = PositiveOr0(detect_rate, "detect_rate");
         track.use_mask = mask;
         track.from_s = begin_s, track.to_s = end_s.value_or(-1);
@@ -185,16 +191,18 @@ void BindPeople(py::module_& module) {
       py::arg("lifter") = py::none(), py::arg("detector") = "heavy", py::arg("pose_model") = py::none(),
       py::arg("box_model") = py::none(), py::arg("models") = py::none(), py::arg("detect_rate") = py::none(),
       py::arg("mask") = true, py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("rotate") = 0,
-      py::arg("captured_fps") = py::none(), py::arg("solver") = ToString(TrackSequenceOptions().solver),
-      py::arg("threads") = 0, py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true,
-      py::arg("side_view") = false, py::arg("masks") = false, py::arg("coarse_masks") = false,
-      py::arg("report") = false, py::arg("progress") = py::none(), kRunDoc);
+      py::arg("captured_fps") = py::none(), py::arg("hands") = "off",
+      py::arg("solver") = ToString(TrackSequenceOptions().solver), py::arg("threads") = 0,
+      py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true, py::arg("side_view") = false,
+      py::arg("masks") = false, py::arg("coarse_masks") = false, py::arg("report") = false,
+      py::arg("progress") = py::none(), kRunDoc);
   module.def(
       "detect",
       [](const Path& video, std::optional<double> fps, const std::string& detector,
          const std::optional<Path>& pose_model, const std::optional<Path>& box_model, const std::optional<Path>& models,
-         int people, std::optional<double> detect_rate, double begin_s, std::optional<double> end_s,
-         const TurnArgument& rotate, std::optional<double> captured_fps, int threads, const py::object& progress) {
+         const std::string& hands, int people, std::optional<double> detect_rate, double begin_s,
+         std::optional<double> end_s, const TurnArgument& rotate, std::optional<double> captured_fps, int threads,
+         const py::object& progress) {
         BODYLOOM_CHECK(people >= 0, "people: expected 0 or more, found ", people);
         CheckThreads(threads);
         DetectPeopleRequest request;
@@ -203,6 +211,7 @@ void BindPeople(py::module_& module) {
         request.span = {PositiveOr0(fps, "fps"), begin_s, end_s.value_or(-1), turn_deg.value_or(0),
                         PositiveOr0(captured_fps, "captured_fps")};
         request.detector = DetectorFrom(detector, pose_model, box_model, models);
+        request.detector.hands_and_faces = HandsAndFaceChoiceNamed(hands);
         request.detector.blazepose.max_people = people;
         request.detector.blazepose.num_threads = ThreadsFor(threads);
         request.detect_rate = PositiveOr0(detect_rate, "detect_rate");
@@ -212,7 +221,7 @@ void BindPeople(py::module_& module) {
       },
       py::arg("video"), py::kw_only(), py::arg("fps") = py::none(), py::arg("detector") = "heavy",
       py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(), py::arg("models") = py::none(),
-      py::arg("people") = 0, py::arg("detect_rate") = py::none(), py::arg("begin_s") = 0.0,
+      py::arg("hands") = "auto", py::arg("people") = 0, py::arg("detect_rate") = py::none(), py::arg("begin_s") = 0.0,
       py::arg("end_s") = py::none(), py::arg("rotate") = 0, py::arg("captured_fps") = py::none(),
       py::arg("threads") = 0, py::arg("progress") = py::none(), kDetectDoc);
 }

@@ -7,12 +7,13 @@
 
 #include "data_tools/formats/printable.h"
 #include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/hand_and_face_points.h"
 #include "data_tools/observations/landmark_names.h"
 
 namespace bodyloom {
 namespace {
 
-constexpr const char* kListKeys[] = {"keypoints", "landmarks", "pose_landmarks"};
+constexpr const char* kListKeys[] = {"keypoints", "landmarks", "pose_landmarks", "poseLandmarks"};
 
 /// The list inside {"keypoints": […]}; the node itself when it is a list.
 const char* ListKey(const JsonNode& node) {
@@ -59,9 +60,32 @@ Keypoint PointFromJson(const JsonNode& node) {
   return point;
 }
 
+/// Points of a hand or a face, under MediaPipe's name in Python or in JavaScript; none when there are none.
+std::vector<Keypoint> PartFromJson(const JsonNode& person, const char* name, const char* other_name) {
+  std::vector<Keypoint> points;
+  for (const char* key : {name, other_name}) {
+    if (!person.Has(key) || IsEmptyFrame(person.At(key))) continue;
+    const JsonNode list = person.At(key);
+    if (!list.is_array()) list.Fail("a list of landmarks");
+    for (size_t k = 0; k < list.size(); ++k) {
+      points.push_back(PointFromJson(list.At(k)));
+      points.back().confidence = 1;  // their visibility is not estimated: files have none, or 0
+    }
+    break;
+  }
+  return points;
+}
+
 DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention& convention) {
   DetectedPerson person;
-  if (const char* key = ListKey(node)) return PersonFromJson(node.At(key), convention);
+  if (const char* key = ListKey(node)) {
+    person = PersonFromJson(node.At(key), convention);
+    person.hands_and_face = HandsAndFaceFrom({PartFromJson(node, "left_hand_landmarks", "leftHandLandmarks"),
+                                              PartFromJson(node, "right_hand_landmarks", "rightHandLandmarks"),
+                                              PartFromJson(node, "face_landmarks", "faceLandmarks")},
+                                             node.place());
+    return person;
+  }
   if (node.is_array()) {
     if (node.size() != convention.names.size()) {
       throw std::runtime_error(node.place() + ": " + std::to_string(node.size()) + " landmarks, expected " +

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/hand_and_face_points.h"
 
 namespace bodyloom {
 namespace {
@@ -101,11 +102,23 @@ PeopleSequence CocoFromJson(const JsonNode& document, double fps) {
     if (const auto found = frame_of_image.find(number); found != frame_of_image.end()) number = found->second;
     DetectedPerson person;
     person.identity = IdentityOf(entry);
-    person.points.resize(ConventionOfCount(num_points)->names.size());
-    for (size_t k = 0; k < person.points.size(); ++k) {
+    for (size_t k = 0; k < num_points; ++k) {
       const double c = numbers[3 * k + 2];
-      person.points[k] = DetectedKeypoint(numbers[3 * k], numbers[3 * k + 1], is_annotation ? ConfidenceOfFlag(c) : c);
+      person.points.push_back(
+          DetectedKeypoint(numbers[3 * k], numbers[3 * k + 1], is_annotation ? ConfidenceOfFlag(c) : c));
     }
+    const size_t num_body = ConventionOfCount(num_points)->names.size();
+    person.hands_and_face = HandsAndFaceOfWholeBody(person.points, num_body, values.place());
+    if (!person.hands_and_face) {  // COCO-WholeBody's annotations have lists of their own
+      const auto part = [&](const char* key) {
+        std::vector<Keypoint> points = PointsAtKey(entry, key);
+        for (Keypoint& p : points) p.confidence = is_annotation ? ConfidenceOfFlag(p.confidence) : p.confidence;
+        return points;
+      };
+      person.hands_and_face =
+          HandsAndFaceFrom({part("lefthand_kpts"), part("righthand_kpts"), part("face_kpts")}, entry.place());
+    }
+    person.points.resize(num_body);
     by_number[number].push_back(std::move(person));
   }
 

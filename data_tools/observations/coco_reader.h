@@ -5,7 +5,8 @@
 /// image_id is a number or a file name; its number is the frame. Several entries with one image_id are several people.
 /// AlphaPose's "idx" and PoseTrack's "track_id" are identities. Confidences above 1 (AlphaPose) count as 1; in
 /// annotations the third value is a flag: 0 missing, 1 labelled but hidden (confidence 0.5), 2 visible (confidence 1).
-/// 17, 23, 26, 133 (COCO-WholeBody) and 136 (Halpe) landmarks are read; face and hands are left out.
+/// 17, 23, 26, 133 (COCO-WholeBody) and 136 (Halpe) landmarks are read; the last 110 of 133 and 136, or the keys
+/// lefthand_kpts, righthand_kpts and face_kpts of COCO-WholeBody's annotations, are the person's hands and face.
 /// Source: cocodataset.org/#format-data, AlphaPose, "Output format".
 #pragma once
 

@@ -132,6 +132,13 @@ KeypointSequence CutFrames(KeypointSequence keypoints, int first, int last) {
   return keypoints;
 }
 
+HandsAndFaceSequence CutFrames(HandsAndFaceSequence hands_and_face, int first, int last) {
+  CheckSpan(first, last, hands_and_face.num_frames());
+  Cut(first, last, 1, &hands_and_face.frames);
+  Cut(first, last, 1, &hands_and_face.timestamps);
+  return hands_and_face;
+}
+
 DenseSequence CutFrames(DenseSequence dense, int first, int last) {
   CheckSpan(first, last, dense.num_frames());
   Cut(first, last, 1, &dense.frames);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/observations.h"
 
 namespace bodyloom {
@@ -39,6 +40,7 @@ FrameGrid MakeFrameGrid(const std::vector<int64_t>& numbers, double fps, const s
 /// Frames [first, last], both included, with their original timestamps. Throws std::invalid_argument for frames out of
 /// range.
 KeypointSequence CutFrames(KeypointSequence keypoints, int first, int last);
+HandsAndFaceSequence CutFrames(HandsAndFaceSequence hands_and_face, int first, int last);
 DenseSequence CutFrames(DenseSequence dense, int first, int last);
 PartLabelSequence CutFrames(PartLabelSequence labels, int first, int last);
 

@@ -25,7 +25,7 @@ const KeypointConvention& Body25();
 const KeypointConvention& Body25B();
 /// OpenPose's 18: COCO with a neck, right side first.
 const KeypointConvention& OpenPoseCoco18();
-/// COCO-WholeBody's first 23 of 133: COCO's 17 and three foot points per side (face and hands are not read).
+/// COCO-WholeBody's first 23 of 133: COCO's 17 and three foot points per side (face and hands: hand_and_face_points.h).
 const KeypointConvention& CocoWholeBody23();
 /// Halpe's 26 (also the first 26 of its 136): COCO's 17, head_top, neck, mid_hip, three foot points per side.
 const KeypointConvention& Halpe26();

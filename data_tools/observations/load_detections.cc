@@ -24,6 +24,7 @@
 #include "data_tools/observations/coco_reader.h"
 #include "data_tools/observations/deeplabcut_reader.h"
 #include "data_tools/observations/freemocap_reader.h"
+#include "data_tools/observations/hand_and_face_points.h"
 #include "data_tools/observations/json_folder.h"
 #include "data_tools/observations/keypoint_array_reader.h"
 #include "data_tools/observations/mmpose_reader.h"
@@ -95,8 +96,28 @@ Bounds CoordinateBounds(const KeypointSequence& sequence) {
   return bounds;
 }
 
-/// Fractions of the image → pixels.
-void ToPixels(KeypointSequence* sequence, bool is_openpose, const std::string& where) {
+/// Calls body(point) for all points of hands and faces.
+template <typename Body>
+void ForEachPoint(HandsAndFaceSequence* sequence, const Body& body) {
+  ChangeHandsAndFaces(
+      [&body](HandsAndFace* frame) {
+        for (std::optional<HandObservation>& hand : frame->hands) {
+          if (hand) std::for_each(hand->points.begin(), hand->points.end(), body);
+        }
+        if (frame->face) std::for_each(frame->face->points.begin(), frame->face->points.end(), body);
+      },
+      sequence);
+}
+
+template <typename Body>
+void ForEachPoint(PersonDetections* person, const Body& body) {
+  std::for_each(person->body.points.begin(), person->body.points.end(), body);
+  ForEachPoint(&person->hands_and_face, body);
+}
+
+/// Fractions of the image → pixels, where the body's landmarks are fractions.
+void ToPixels(PersonDetections* person, bool is_openpose, const std::string& where) {
+  KeypointSequence* sequence = &person->body;
   const Bounds bounds = CoordinateBounds(*sequence);
   if (bounds.highest > kMaxNormalised || bounds.lowest < -kMaxNormalised) return;
   if (sequence->image_width <= 0 || sequence->image_height <= 0) {
@@ -105,12 +126,12 @@ void ToPixels(KeypointSequence* sequence, bool is_openpose, const std::string& w
                              " are fractions of the image, whose size is not known; give its width and height");
   }
   const bool is_symmetric = is_openpose && bounds.lowest < -0.01;  // OpenPose --keypoint_scale 4: [−1, 1]
-  for (Keypoint& p : sequence->points) {
-    if (!(p.confidence > 0)) continue;
+  ForEachPoint(person, [&](Keypoint& p) {
+    if (!(p.confidence > 0)) return;
     const double u = is_symmetric ? 0.5 * (p.x + 1) : p.x, v = is_symmetric ? 0.5 * (p.y + 1) : p.y;
     p.x = static_cast<float>(u * sequence->image_width - 0.5);
     p.y = static_cast<float>(v * sequence->image_height - 0.5);
-  }
+  });
 }
 
 /// Throws if the image size contradicts the detections: a wrong file, a wrong video or swapped numbers.
@@ -168,47 +189,57 @@ PeopleSequence PeopleInFolder(const std::string& folder, const LoadDetectionsOpt
   return ReadOpenPoseFolder(folder, fps, options.convention, warnings);
 }
 
-KeypointSequence KeypointsOfNpz(const std::string& bytes, const std::string& path, double fps,
-                                const LoadDetectionsOptions& options) {
+PersonDetections Selected(const PeopleSequence& people, int number, const std::string& where) {
+  const PersonTrack person = PersonOf(people, number, where);
+  return {KeypointsOf(people, person), HandsAndFaceOf(people, person)};
+}
+
+/// Of formats that have the body alone.
+PersonDetections BodyAlone(KeypointSequence body) { return {std::move(body), {}}; }
+
+PersonDetections PersonOfNpz(const std::string& bytes, const std::string& path, double fps,
+                             const LoadDetectionsOptions& options) {
   const NpzArrays arrays = ReadNpzBytes(bytes, path);
-  if (IsVideoPose3d(arrays)) return VideoPose3dFromNpz(bytes, path, options.view, fps, options.convention);
-  if (HasPeople(arrays)) return SelectPerson(PeopleFromNpz(arrays, path), options.person, path);
+  if (IsVideoPose3d(arrays)) return BodyAlone(VideoPose3dFromNpz(bytes, path, options.view, fps, options.convention));
+  if (HasPeople(arrays)) return Selected(PeopleFromNpz(arrays, path), options.person, path);
   if (const NdArray* array = KeypointArrayOf(arrays)) {
-    return KeypointsFromArray(*array, path, options.view, fps, options.convention);
+    return BodyAlone(KeypointsFromArray(*array, path, options.view, fps, options.convention));
   }
-  if (HasKeypoints(arrays)) return KeypointsFromNpz(arrays, path);
+  if (HasKeypoints(arrays)) return BodyAlone(KeypointsFromNpz(arrays, path));
   throw std::runtime_error(path + ": an .npz without 'keypoints'" +
                            (HasDense(arrays) ? " (it holds dense keypoints)" : "") + "; " + kExpectedDetections);
 }
 
 /// One person's landmarks as in the file.
-KeypointSequence ReadBytes(const std::string& bytes, const std::string& path, const LoadDetectionsOptions& options,
+PersonDetections ReadBytes(const std::string& bytes, const std::string& path, const LoadDetectionsOptions& options,
                            std::vector<std::string>* warnings) {
   const double fps = options.fps > 0 ? options.fps : kUsualFps;
   if (bytes.empty()) throw std::runtime_error(path + ": the file is empty; " + kExpectedDetections);
   if (StartsLikeJson(bytes)) {
     const nlohmann::json json = ParseJsonLines(bytes, path, {.nan_is_null = true}, warnings);
-    return SelectPerson(PeopleFromJson(JsonNode(json, path), fps, options.convention), options.person, path);
+    return Selected(PeopleFromJson(JsonNode(json, path), fps, options.convention), options.person, path);
   }
-  if (LooksLikeZip(bytes)) return KeypointsOfNpz(bytes, path, fps, options);
+  if (LooksLikeZip(bytes)) return PersonOfNpz(bytes, path, fps, options);
   if (bytes.compare(0, 6, "\x93NUMPY") == 0) {
     const NdArray array = ReadNpyBytes(bytes, path);
-    if (IsFreeMocap(array) && options.convention.empty()) return FreeMocapFromArray(array, path, options.view, fps);
-    return KeypointsFromArray(array, path, options.view, fps, options.convention);
+    return BodyAlone(IsFreeMocap(array) && options.convention.empty()
+                         ? FreeMocapFromArray(array, path, options.view, fps)
+                         : KeypointsFromArray(array, path, options.view, fps, options.convention));
   }
   if (StartsLikePickle(bytes)) {
     const PicklePtr file = ReadPickle(bytes, path);
     if (IsAistKeypoints2d(*file)) {
-      return AistKeypoints2dFromPickle(*file, path, options.view, options.fps > 0 ? options.fps : kAistFps);
+      return BodyAlone(AistKeypoints2dFromPickle(*file, path, options.view, options.fps > 0 ? options.fps : kAistFps));
     }
     throw std::runtime_error(path + ": a pickle without 'keypoints2d'; " + kExpectedDetections);
   }
-  if (IsDeepLabCutCsv(bytes)) return SelectPerson(DeepLabCutFromCsv(bytes, path, fps), options.person, path);
+  if (IsDeepLabCutCsv(bytes)) return Selected(DeepLabCutFromCsv(bytes, path, fps), options.person, path);
   throw std::runtime_error(path + ": unknown kind of file; " + kExpectedDetections);
 }
 
 /// Applies the caller's options and the checks common to all formats.
-KeypointSequence Finish(KeypointSequence sequence, const std::string& path, const LoadDetectionsOptions& options) {
+PersonDetections Finish(PersonDetections person, const std::string& path, const LoadDetectionsOptions& options) {
+  KeypointSequence& sequence = person.body;
   const bool has_other_size = options.other_width > 0 && sequence.image_width == options.other_width &&
                               sequence.image_height == options.other_height;
   if (options.image_width > 0 && !has_other_size) {
@@ -222,14 +253,17 @@ KeypointSequence Finish(KeypointSequence sequence, const std::string& path, cons
     sequence.image_height = options.image_height;
   }
   DropUnsure(options.min_confidence, &sequence);
+  DropUnsure(options.min_confidence, &person.hands_and_face);
   if (CoordinateBounds(sequence).seen == 0) {
     throw NoPersonFound(path + ": nobody was detected in any of " + std::to_string(sequence.num_frames()) + " frames");
   }
   const bool is_openpose =
       sequence.convention == "body25" || sequence.convention == "body25b" || sequence.convention == "openpose_coco18";
-  ToPixels(&sequence, is_openpose, path);
+  ToPixels(&person, is_openpose, path);
   CheckImageSize(sequence, path);
-  return sequence;
+  person.hands_and_face.image_width = sequence.image_width;
+  person.hands_and_face.image_height = sequence.image_height;
+  return person;
 }
 
 void CheckOptions(const LoadDetectionsOptions& options) {
@@ -248,22 +282,34 @@ void DropUnsure(double min_confidence, KeypointSequence* sequence) {
   }
 }
 
+void DropUnsure(double min_confidence, HandsAndFaceSequence* sequence) {
+  if (min_confidence <= 0) return;
+  ForEachPoint(sequence, [min_confidence](Keypoint& p) {
+    if (!(p.confidence >= min_confidence)) p = {};
+  });
+}
+
 KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string& where,
                                      const LoadDetectionsOptions& options, std::vector<std::string>* warnings) {
   CheckOptions(options);
-  return Finish(ReadBytes(bytes, where, options, warnings), where, options);
+  return Finish(ReadBytes(bytes, where, options, warnings), where, options).body;
+}
+
+PersonDetections LoadPersonDetections(const std::string& path, const LoadDetectionsOptions& options,
+                                      std::vector<std::string>* warnings) {
+  CheckOptions(options);
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) {
+    return Finish(ReadBytes(ReadFileBytes(path, kMaxDetectionBytes), path, options, warnings), path, options);
+  }
+  const std::string folder = FolderOfView(path, options.view);
+  const PeopleSequence people = PeopleInFolder(folder, options, warnings);
+  return Finish(Selected(people, options.person, folder), path, options);
 }
 
 KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options,
                                 std::vector<std::string>* warnings) {
-  CheckOptions(options);
-  std::error_code ignored;
-  if (!fs::is_directory(path, ignored)) {
-    return DetectionsFromBytes(ReadFileBytes(path, kMaxDetectionBytes), path, options, warnings);
-  }
-  const std::string folder = FolderOfView(path, options.view);
-  const PeopleSequence people = PeopleInFolder(folder, options, warnings);
-  return Finish(SelectPerson(people, options.person, folder), path, options);
+  return LoadPersonDetections(path, options, warnings).body;
 }
 
 }  // namespace bodyloom

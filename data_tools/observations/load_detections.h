@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/observations.h"
 
 namespace bodyloom {
@@ -28,9 +29,20 @@ struct LoadDetectionsOptions {
   std::string convention;  ///< order of landmarks of OpenPose, bare arrays, VideoPose3D; empty: detected by each reader
 };
 
+/// A person's landmarks, and the hands and face in the same frames where the file has any: OpenPose, COCO-WholeBody and
+/// Halpe, MMPose, MediaPipe and the project's own .npz.
+struct PersonDetections {
+  KeypointSequence body;
+  HandsAndFaceSequence hands_and_face;
+};
+
 /// `warnings`, when requested, gets a line for each fault that was passed over: broken files in a folder
 /// (json_folder.h), a cut end of JSON Lines. Throws std::runtime_error in one line: what was found, what was expected,
 /// what to do; std::invalid_argument for options that contradict each other.
+PersonDetections LoadPersonDetections(const std::string& path, const LoadDetectionsOptions& options = {},
+                                      std::vector<std::string>* warnings = nullptr);
+
+/// Its body alone.
 KeypointSequence LoadDetections(const std::string& path, const LoadDetectionsOptions& options = {},
                                 std::vector<std::string>* warnings = nullptr);
 
@@ -41,5 +53,6 @@ KeypointSequence DetectionsFromBytes(const std::string& bytes, const std::string
 
 /// Marks landmarks with a confidence that is lower or NaN as missing.
 void DropUnsure(double min_confidence, KeypointSequence* sequence);
+void DropUnsure(double min_confidence, HandsAndFaceSequence* sequence);
 
 }  // namespace bodyloom

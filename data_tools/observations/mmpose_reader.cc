@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "data_tools/formats/printable.h"
+#include "data_tools/observations/hand_and_face_points.h"
 #include "data_tools/observations/json_folder.h"
 #include "geometry/base/check.h"
 
@@ -29,15 +30,17 @@ DetectedPerson PersonFromJson(const JsonNode& node, const KeypointConvention** c
   RequireConventionOfCount(n, points.place(), convention);
   const std::vector<double> scores = node.At("keypoint_scores").NumbersOrNan(static_cast<int>(n));
   DetectedPerson person;
-  person.points.resize((*convention)->names.size());
-  for (size_t k = 0; k < person.points.size(); ++k) {
+  for (size_t k = 0; k < n; ++k) {
     const JsonNode point = points.At(k);
     if (point.size() == 3) {
       ThrowFileError(point.place(), "3 numbers: keypoints that were lifted to 3D, expected pixels (x, y)");
     }
     const std::vector<double> xy = point.NumbersOrNan(2);
-    person.points[k] = DetectedKeypoint(xy[0], xy[1], scores[k]);
+    person.points.push_back(DetectedKeypoint(xy[0], xy[1], scores[k]));
   }
+  const size_t num_body = (*convention)->names.size();
+  person.hands_and_face = HandsAndFaceOfWholeBody(person.points, num_body, points.place());
+  person.points.resize(num_body);
   return person;
 }
 

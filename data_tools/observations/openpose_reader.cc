@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "data_tools/observations/frame_numbers.h"
+#include "data_tools/observations/hand_and_face_points.h"
 #include "data_tools/observations/json_folder.h"
 #include "geometry/base/check.h"
 
@@ -46,6 +47,10 @@ RawFrame FrameFromJson(const JsonNode& frame, size_t* num_points) {
       const std::vector<double> ids = entry.At("person_id").Numbers();
       if (ids.size() == 1 && ids[0] >= 0 && ids[0] < 1e9) person.identity = static_cast<int>(ids[0]);
     }
+    person.hands_and_face =
+        HandsAndFaceFrom({PointsAtKey(entry, "hand_left_keypoints_2d"), PointsAtKey(entry, "hand_right_keypoints_2d"),
+                          PointsAtKey(entry, "face_keypoints_2d")},
+                         entry.place());
     people.push_back(std::move(person));
   }
   return people;

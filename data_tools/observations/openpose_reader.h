@@ -6,7 +6,8 @@
 /// may hold empty objects. The number of landmarks determines the model, except that BODY_25 and BODY_25B both have 25:
 /// in BODY_25 landmark 1 lies between landmarks 2 and 5 (a neck between shoulders), in BODY_25B the first three form a
 /// face. Also read: a list of such frames in one file, a table {"12.jpg": {"people": …}}, and the older key
-/// "pose_keypoints". Source: OpenPose doc/02_output.md.
+/// "pose_keypoints". hand_left_keypoints_2d, hand_right_keypoints_2d (21 each) and face_keypoints_2d (70) are the
+/// person's hands and face. Source: OpenPose doc/02_output.md.
 #pragma once
 
 #include <string>

@@ -192,6 +192,18 @@ KeypointSequence KeypointsOf(const PeopleSequence& people, const PersonTrack& pe
   return sequence;
 }
 
+HandsAndFaceSequence HandsAndFaceOf(const PeopleSequence& people, const PersonTrack& person) {
+  HandsAndFaceSequence sequence;
+  sequence.frames.resize(people.frames.size());
+  sequence.timestamps = people.timestamps;
+  sequence.image_width = people.image_width;
+  sequence.image_height = people.image_height;
+  for (const auto& [t, index] : person.detections) {
+    sequence.frames[size_t(t)] = people.frames[size_t(t)][size_t(index)].hands_and_face;
+  }
+  return sequence;
+}
+
 KeypointSequence SelectPerson(const PeopleSequence& people, int person, const std::string& where) {
   return KeypointsOf(people, PersonOf(people, person, where));
 }

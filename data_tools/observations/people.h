@@ -10,18 +10,21 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "data_tools/observations/keypoint_conventions.h"
+#include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/observations.h"
 
 namespace bodyloom {
 
 struct DetectedPerson {
-  std::vector<Keypoint> points;  ///< one per landmark of the convention
-  int identity = -1;             ///< from the detector's own tracker; −1 if it has none
+  std::vector<Keypoint> points;                        ///< one per landmark of the convention
+  int identity = -1;                                   ///< from the detector's own tracker; −1 if it has none
+  std::shared_ptr<const HandsAndFace> hands_and_face = nullptr;  ///< null: none
 };
 
 /// A landmark from a file's numbers: all zero, which is missing, unless all three are finite.
@@ -56,6 +59,9 @@ PersonTrack PersonOf(const PeopleSequence& people, int person, const std::string
 /// The landmarks of one person, missing in frames without that person. Confidences are clamped to [0, 1]; non-finite
 /// points become missing.
 KeypointSequence KeypointsOf(const PeopleSequence& people, const PersonTrack& person);
+
+/// The hands and face of one person, in the same frames; HandsAndFaceSequence::empty() if nobody looked for them.
+HandsAndFaceSequence HandsAndFaceOf(const PeopleSequence& people, const PersonTrack& person);
 
 /// KeypointsOf(PersonOf()). Throws as PersonOf.
 KeypointSequence SelectPerson(const PeopleSequence& people, int person, const std::string& where);

@@ -10,6 +10,20 @@
 /// | people_keypoints   | N×K×3  | f4   | x_px, y_px, confidence in [0,1] (0: missing)                     |
 /// | keypoint_names     | K      | text | landmark names                                                   |
 /// | keypoint_convention| scalar | text | "mediapipe33", …                                                 |
+///
+/// Hands and faces (geometry/scene/hands_and_face.h), where somebody has any; a row each, in the order of the people:
+///
+/// | key                 | shape  | type | meaning                                                         |
+/// |---------------------|--------|------|-----------------------------------------------------------------|
+/// | hand_person         | H      | i4   | row of people_frame whose hand it is                            |
+/// | hand_side           | H      | i4   | 0 left, 1 right                                                 |
+/// | hand_keypoints      | H×21×3 | f4   | x_px, y_px, confidence in [0,1] (0: missing)                    |
+/// | hand_sigma_px       | H×21   | f4   | standard deviation along an axis; 0: not known                  |
+/// | hand_metres         | H×21×3 | f4   | HandObservation::metres; NaN: not known                         |
+/// | face_person         | F      | i4   | row of people_frame                                             |
+/// | face_keypoints      | F×68×3 | f4   | x_px, y_px, confidence in [0,1] (0: missing)                    |
+/// | face_sigma_px       | F      | f4   | standard deviation along an axis; 0: not known                  |
+/// | face_depth_px       | F×68   | f4   | FaceObservation::depth_px; NaN: not known                       |
 #pragma once
 
 #include <string>

@@ -61,6 +61,7 @@ DetectedClip DetectLandmarks(const DetectClipRequest& request, const PipelineCal
                              DetectClipReport* report) {
   DetectPeopleRequest detect = request.detect;
   detect.detector.blazepose.masks = !request.mask.empty();
+  if (request.out.empty()) detect.detector.hands_and_faces = HandsAndFaceChoice::kOff;  // nothing would show them
   callbacks.Begin("detecting people");
   clock->Begin("detect");
   DetectedClip clip = DetectPeople(detect, callbacks);
@@ -195,6 +196,7 @@ std::string ToJson(const DetectClipReport& report) {
     json["regions"] = found.detector.regions;
     json["search_seconds"] = found.detector.search_seconds;
     json["landmark_seconds"] = found.detector.landmark_seconds;
+    AddHandsAndFaces(found.detector.hands_and_faces, &json);
     if (found.mask_cut) json["masks_cut"] = *found.mask_cut;
   }
   if (report.dense) {
@@ -211,6 +213,7 @@ std::string ToText(const DetectClipReport& report) {
   std::string text = Concatenate("frames   ", report.frames, " of ", report.width, "x", report.height, " pixels");
   if (report.landmarks) {
     text += Concatenate(", ", report.landmarks->frames_with_people, " with people\n", ToText(report.landmarks->people));
+    text += ToText(report.landmarks->detector.hands_and_faces);
     if (const auto cut = report.landmarks->mask_cut) text += Concatenate("masks    ", MasksText(*cut), "\n");
   } else {
     text += "\n";

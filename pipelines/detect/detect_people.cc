@@ -130,6 +130,9 @@ void RequirePoseModels(const FrameDetectorOptions& detector) {
   if (!detector.box_model.empty() && detector.pose_model.empty()) {
     throw RequestError("--box-model finds people for RTMPose: give --pose-model");
   }
+  if (!detector.pose_model.empty() && detector.hands_and_faces == HandsAndFaceChoice::kOn) {
+    throw RequestError("--hands on finds them by way of BlazePose's landmarks: leave it out with --pose-model");
+  }
   RequireReadable(detector.pose_model, "pose model");
   RequireReadable(detector.box_model, "box model");
 }

@@ -42,6 +42,7 @@ int FindTurn(const DetectPeopleRequest& request, const PipelineCallbacks& callba
   const std::vector<Image> frames = SpreadFrames(request);
   FrameDetectorOptions options = request.detector;
   options.blazepose.masks = false;
+  options.hands_and_faces = HandsAndFaceChoice::kOff;
   options.blazepose.search_interval = 1;  // the frames are too far apart to follow anybody
   constexpr std::array<int, 4> kTurns = {0, 90, 180, 270};
   std::array<double, 4> upright = {};

@@ -118,6 +118,7 @@ TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople
   report.num_frames = int(detected.frames.size());
   report.fps = VideoFrameRate(detected.timestamps);
   report.network = FrameDetectorName(request.track.detector);
+  report.hands_and_faces = people.clip.detector.hands_and_faces;
   const std::vector<FoundPerson> found = FoundPeople(detected, people.everybody);
   report.num_found = int(found.size());
   for (const int number : people.chosen) {

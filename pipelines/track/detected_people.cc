@@ -42,9 +42,12 @@ DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack&
   DetectedObservations seen;
   seen.keypoints = CutFrames(KeypointsOf(clip.people, person), frames.first, frames.second);
   DropUnsure(request.min_confidence, &seen.keypoints);
+  seen.hands_and_face = CutFrames(HandsAndFaceOf(clip.people, person), frames.first, frames.second);
+  DropUnsure(request.min_confidence, &seen.hands_and_face);
   if (DetectsMasks(request)) seen.mask = CutFrames(MaskOfPerson(clip, person), frames.first, frames.second);
   if (same_pixels) return seen;
   seen.keypoints = MovedToCamera(std::move(seen.keypoints), map, camera.width, camera.height);
+  seen.hands_and_face = MovedToCamera(std::move(seen.hands_and_face), map, camera.width, camera.height);
   if (seen.mask) seen.mask = MovedToCamera(*seen.mask, map, camera.width, camera.height);
   return seen;
 }

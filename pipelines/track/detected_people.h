@@ -7,6 +7,7 @@
 
 #include "data_tools/observations/people.h"
 #include "geometry/base/callbacks.h"
+#include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/detect/detect_people.h"
 #include "pipelines/detect/find_turn.h"
@@ -18,6 +19,7 @@ namespace bodyloom {
 /// Observations of one person.
 struct DetectedObservations {
   KeypointSequence keypoints;
+  HandsAndFaceSequence hands_and_face;
   std::optional<PartLabelSequence> mask;  ///< none when the request uses no masks
 };
 

@@ -4,9 +4,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "data_tools/observations/hand_and_face_points.h"
 #include "pipelines/video/track_video.h"
 
 namespace bodyloom {
@@ -76,6 +78,36 @@ KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& ma
   keypoints.image_width = width;
   keypoints.image_height = height;
   return keypoints;
+}
+
+HandsAndFaceSequence MovedKeypoints(HandsAndFaceSequence hands_and_face, const Matrix2x3d& map, int width, int height) {
+  const auto scale = float(std::sqrt(std::abs(map.leftCols<2>().determinant())));
+  const auto move = [&map](Keypoint& point) {
+    const Eigen::Vector2d moved = Apply(map, point.x, point.y);
+    point.x = float(moved.x());
+    point.y = float(moved.y());
+  };
+  ChangeHandsAndFaces(
+      [&](HandsAndFace* frame) {
+        for (std::optional<HandObservation>& hand : frame->hands) {
+          if (!hand) continue;
+          std::for_each(hand->points.begin(), hand->points.end(), move);
+          for (float& sigma : hand->sigma_px) sigma *= scale;
+        }
+        if (!frame->face) return;
+        std::for_each(frame->face->points.begin(), frame->face->points.end(), move);
+        frame->face->sigma_px *= scale;
+        for (float& depth : frame->face->depth_px) depth *= scale;
+      },
+      &hands_and_face);
+  hands_and_face.image_width = width;
+  hands_and_face.image_height = height;
+  return hands_and_face;
+}
+
+HandsAndFaceSequence MovedToCamera(HandsAndFaceSequence hands_and_face, const Matrix2x3d& video_from_camera,
+                                   int camera_width, int camera_height) {
+  return MovedKeypoints(std::move(hands_and_face), Inverse(video_from_camera), camera_width, camera_height);
 }
 
 KeypointSequence MovedToCamera(KeypointSequence keypoints, const Matrix2x3d& video_from_camera, int camera_width,

@@ -7,6 +7,7 @@
 #include "data_tools/observations/load_cameras.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/scene/camera.h"
+#include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/observations.h"
 
 namespace bodyloom {
@@ -14,9 +15,14 @@ namespace bodyloom {
 /// Moves keypoints at p to map · (p, 1). The image size becomes width × height.
 KeypointSequence MovedKeypoints(KeypointSequence keypoints, const Matrix2x3d& map, int width, int height);
 
+/// The same; standard deviations and depths are scaled by the square root of the map's determinant.
+HandsAndFaceSequence MovedKeypoints(HandsAndFaceSequence hands_and_face, const Matrix2x3d& map, int width, int height);
+
 /// Moves keypoints at p to q with p = video_from_camera · (q, 1). The image size becomes the camera's.
 KeypointSequence MovedToCamera(KeypointSequence keypoints, const Matrix2x3d& video_from_camera, int camera_width,
                                int camera_height);
+HandsAndFaceSequence MovedToCamera(HandsAndFaceSequence hands_and_face, const Matrix2x3d& video_from_camera,
+                                   int camera_width, int camera_height);
 
 /// The same; standard deviations in pixels are scaled by the square root of the map's determinant.
 DenseSequence MovedToCamera(DenseSequence dense, const Matrix2x3d& video_from_camera, int camera_width,

@@ -107,6 +107,7 @@ OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOver
   // Only now and here in the video's pixels.
   std::vector<Track> tracks;
   std::vector<KeypointSequence> detected;
+  std::vector<HandsAndFaceSequence> hands_and_face;
   std::unique_ptr<TrackVideo> video;
   if (!what.video.empty()) {
     video = std::make_unique<TrackVideo>(what.video, *what.people[0].track, what.video_px_from_camera_px);
@@ -114,14 +115,18 @@ OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOver
   for (const PersonInOverlay& person : what.people) {
     tracks.push_back(video != nullptr ? video->Moved(*person.track) : *person.track);
     detected.push_back(person.detected != nullptr ? *person.detected : KeypointSequence());
+    hands_and_face.push_back(person.hands_and_face != nullptr ? *person.hands_and_face : HandsAndFaceSequence());
     if (video == nullptr) continue;
     detected.back() =
         MovedKeypoints(std::move(detected.back()), video->map(), video->info().width, video->info().height);
+    hands_and_face.back() =
+        MovedKeypoints(std::move(hands_and_face.back()), video->map(), video->info().width, video->info().height);
   }
   std::vector<PersonInOverlay> people = what.people;
   for (size_t i = 0; i < people.size(); ++i) {
     people[i].track = &tracks[i];
     if (people[i].detected != nullptr) people[i].detected = &detected[i];
+    if (people[i].hands_and_face != nullptr) people[i].hands_and_face = &hands_and_face[i];
   }
   OverlayOptions options;
   options.side_view = what.side_view;

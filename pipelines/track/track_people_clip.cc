@@ -87,6 +87,7 @@ void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scen
     overlay.people.push_back({.body = scene.body.get(),
                               .track = &tracked.result.people[i].track,
                               .detected = &tracked.seen[i].keypoints,
+                              .hands_and_face = &tracked.seen[i].hands_and_face,
                               .number = report->people[i].number});
   }
   overlay.video = request.track.video;

@@ -116,6 +116,7 @@ std::string ToText(const TrackPeopleReport& report) {
     text += "left out " + SeenText(left_out[i].number, left_out[i].seen) + left_out[i].why + "\n";
   }
   if (left_out.size() > kMostTold) text += Concatenate("left out ", left_out.size() - kMostTold, " more\n");
+  text += ToText(report.hands_and_faces);
   if (report.masks_cut) text += Concatenate("masks    ", MasksText(*report.masks_cut), "\n");
   text += ToText(report.camera_path, report.camera_scale);
   text += SceneText(report.scene);
@@ -158,6 +159,7 @@ std::string ToJson(const TrackPeopleReport& report) {
                {"peak_memory_bytes", report.peak_memory_bytes},
                {"outputs", report.outputs}};
   for (const ViewReport& view : report.views) json["views"].push_back(ToJson(view));
+  AddHandsAndFaces(report.hands_and_faces, &json);
   if (report.masks_cut) json["masks_cut"] = *report.masks_cut;
   if (!report.camera_path.file.empty()) json["camera_path"] = ToJson(report.camera_path, report.camera_scale);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

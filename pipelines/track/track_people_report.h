@@ -40,7 +40,8 @@ struct TrackPeopleReport {
   std::string video;
   int width = 0, height = 0, num_frames = 0;
   double fps = 0;
-  std::string network;            ///< FrameDetectorName()
+  std::string network;  ///< FrameDetectorName()
+  HandsAndFaceSummary hands_and_faces;
   std::optional<bool> masks_cut;  ///< of masks that were written: CutMasks()
   int num_found = 0;              ///< people in the detections, including those left out
   std::vector<TrackedPerson> people;

@@ -22,6 +22,7 @@ __all__ = [
     "LiveFrame",
     "LiveTracker",
     "Person",
+    "PersonKeypoints",
     "Renderer",
     "RigCamera",
     "ShownAvatar",
@@ -94,6 +95,20 @@ class Keypoints:
     @property
     def image_size(self) -> tuple[int, int]: ...
     def __len__(self) -> int: ...
+
+class PersonKeypoints(Keypoints):
+    @property
+    def hands(self) -> _Floats: ...
+    @property
+    def hand_sigma_px(self) -> _Floats: ...
+    @property
+    def hand_metres(self) -> _Floats: ...
+    @property
+    def face(self) -> _Floats: ...
+    @property
+    def face_sigma_px(self) -> _Floats: ...
+    @property
+    def face_depth_px(self) -> _Floats: ...
 
 class Camera:
     def __init__(
@@ -621,6 +636,7 @@ def run(
     end_s: float | None = None,
     rotate: int | Literal["auto"] = 0,
     captured_fps: float | None = None,
+    hands: Literal["auto", "on", "off"] = "off",
     solver: Literal["chain+ceres", "chain", "ceres"] = "chain+ceres",
     threads: int = 0,
     uncertainty: bool = True,
@@ -640,6 +656,7 @@ def detect(
     pose_model: _Path | None = None,
     box_model: _Path | None = None,
     models: _Path | None = None,
+    hands: Literal["auto", "on", "off"] = "auto",
     people: int = 0,
     detect_rate: float | None = None,
     begin_s: float = 0.0,

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -194,6 +196,43 @@ void DrawResiduals(const DrawnKeypoints& detected, const DrawnKeypoints& project
     if (!IsDrawn(detected, k) || !IsDrawn(projected, k)) continue;
     cv::line(mat, PointOf(detected, k), PointOf(projected, k), ScalarOf(kPaperColour),
              std::max(1, static_cast<int>(std::lround(width_px))), cv::LINE_AA, kDrawingShift);
+  }
+}
+
+namespace {
+
+/// Lines between seen points, and discs at them where `discs`.
+void DrawPoints(std::span<const Keypoint> points, std::span<const std::pair<int, int>> lines, Colour colour,
+                double min_confidence, bool discs, Image* image) {
+  const auto seen = [&](int k) { return points[size_t(k)].confidence > min_confidence; };
+  const auto place = [&](int k) { return FixedPoint(Eigen::Vector2d(points[size_t(k)].x, points[size_t(k)].y)); };
+  cv::Mat mat = MatOf(image);
+  const double radius = std::max(1.0, image->height / 540.0);
+  const int width = std::max(1, int(std::lround(0.8 * radius)));
+  for (const bool border : {true, false}) {  // dark borders first, so that crossing fingers stay readable
+    for (const auto& [a, b] : lines) {
+      if (!seen(a) || !seen(b)) continue;
+      cv::line(mat, place(a), place(b), ScalarOf(border ? kInkColour : colour), width + (border ? 2 : 0), cv::LINE_AA,
+               kDrawingShift);
+    }
+  }
+  for (int k = 0; discs && k < int(points.size()); ++k) {
+    if (!seen(k)) continue;
+    cv::circle(mat, place(k), int(std::lround(radius * (1 << kDrawingShift))), ScalarOf(colour), cv::FILLED,
+               cv::LINE_AA, kDrawingShift);
+  }
+}
+
+}  // namespace
+
+void DrawHandsAndFace(const HandsAndFace& hands_and_face, double min_confidence, Image* image) {
+  for (const auto side : {HandsAndFace::kLeft, HandsAndFace::kRight}) {
+    const std::optional<HandObservation>& hand = hands_and_face.hands[side];
+    const Colour colour = side == HandsAndFace::kLeft ? kLeftColour : kRightColour;
+    if (hand) DrawPoints(hand->points, HandBones(), colour, min_confidence, true, image);
+  }
+  if (hands_and_face.face) {
+    DrawPoints(hands_and_face.face->points, FaceLines(), kPaperColour, min_confidence, false, image);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "geometry/body/posed_body.h"
 #include "geometry/math/arrays.h"
 #include "geometry/scene/camera.h"
+#include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/observations.h"
 #include "render/image/image.h"
 #include "render/view/caption.h"
@@ -62,5 +63,9 @@ void DrawKeypoints(const DrawnKeypoints& keypoints, const KeypointStyle& style, 
 
 /// Draws thin lines from each detected point to its projected counterpart (same names and order) to show errors.
 void DrawResiduals(const DrawnKeypoints& detected, const DrawnKeypoints& projected, double width_px, Image* image);
+
+/// Draws the bones of the fingers and the lines of the face, thinner than a body's; left is warm, right is cool. Points
+/// at or below min_confidence are left out, and bones and lines that end in them.
+void DrawHandsAndFace(const HandsAndFace& hands_and_face, double min_confidence, Image* image);
 
 }  // namespace bodyloom

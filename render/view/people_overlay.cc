@@ -216,8 +216,11 @@ Image PeopleOverlay::Render(int moment, const Image* background) const {
     drawer_.Draw(vertices, scene.faces, camera(), style, &view);
   }
   for (size_t i = 0; i < people_.size(); ++i) {
-    const auto& [body, track, detected, number] = people_[i];
+    const auto& [body, track, detected, hands_and_face, number] = people_[i];
     const int frame = frames_[i][size_t(moment)];
+    if (frame >= 0 && hands_and_face != nullptr && hands_and_face->frames[size_t(frame)]) {
+      DrawHandsAndFace(*hands_and_face->frames[size_t(frame)], options_.min_confidence, &view);
+    }
     if (frame < 0 || detected == nullptr || !track->HasResult(frame)) continue;
     const Motion& motion = track->motion;
     DrawOverlayLandmarks({.body = body,

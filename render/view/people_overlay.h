@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/body/body_model.h"
+#include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/track.h"
 #include "render/image/image.h"
@@ -20,8 +21,9 @@ namespace bodyloom {
 struct PersonInOverlay {
   const BodyModel* body = nullptr;
   const Track* track = nullptr;
-  const KeypointSequence* detected = nullptr;  ///< may be null; the frames of the track
-  int number = 0;                              ///< in the caption; determines the colour (PersonColour)
+  const KeypointSequence* detected = nullptr;            ///< may be null; the frames of the track
+  const HandsAndFaceSequence* hands_and_face = nullptr;  ///< the same
+  int number = 0;                                        ///< in the caption; determines the colour (PersonColour)
 };
 
 /// Not for use by two threads at once; copies are.

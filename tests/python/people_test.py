@@ -48,6 +48,27 @@ class TwoPeople(unittest.TestCase):
         track = bodyloom.track(people[1])
         self.assertEqual(len(track), len(people[1]))
 
+    def test_hands_and_faces_are_those_of_the_command(self):
+        out = self.folder / "hands.npz"
+        run_command("detect", "--video", VIDEO, "--hands", "on", "--from", "0.5", "--to", "0.6", "--detector", "full",
+                    "--models", MODELS, "--out", out)
+        people = bodyloom.detect(VIDEO, hands="on", **SPAN)
+        found = 0
+        for i, person in enumerate(people):
+            written = bodyloom.Keypoints.load(out, person=i)
+            self.assertIs(type(person), type(written))
+            if not isinstance(person, bodyloom.PersonKeypoints):
+                continue
+            found += np.count_nonzero(person.hands[:, :, 0, 2])
+            frames = len(person)
+            for name, shape in (("hands", (2, 21, 3)), ("hand_sigma_px", (2, 21)), ("hand_metres", (2, 21, 3)),
+                                ("face", (68, 3)), ("face_sigma_px", ()), ("face_depth_px", (68,))):
+                self.assertEqual(getattr(person, name).shape, (frames, *shape))
+                np.testing.assert_array_equal(getattr(person, name), getattr(written, name))
+        self.assertGreater(found, 0)
+        for person in bodyloom.detect(VIDEO, hands="off", **SPAN):
+            self.assertIs(type(person), bodyloom.Keypoints)
+
     def test_a_progress_function_ends_it(self):
         with self.assertRaises(bodyloom.Cancelled):
             bodyloom.run(VIDEO, progress=lambda stage, fraction: False, **SPAN)
@@ -63,6 +84,8 @@ class Refusals(unittest.TestCase):
             bodyloom.run("nothere.mp4", report=True)
         with self.assertRaisesRegex(ValueError, "lite, full or heavy"):
             bodyloom.detect("nothere.mp4", detector="huge")
+        with self.assertRaisesRegex(ValueError, "off, auto or on"):
+            bodyloom.detect("nothere.mp4", hands="yes")
         with self.assertRaisesRegex(ValueError, "both choose"):
             bodyloom.run("nothere.mp4", person=0, people=2)
 

@@ -29,23 +29,48 @@ DetectedPerson ToPerson(const DetectedPose& pose) {
 
 class BlazePoseFrames : public FrameDetector {
  public:
-  BlazePoseFrames(const std::string& models, const PeopleDetectorOptions& options) : detector_(models, options) {}
+  explicit BlazePoseFrames(const FrameDetectorOptions& options) : detector_(options.models, options.blazepose) {
+    if (options.hands_and_faces == HandsAndFaceChoice::kOff) return;
+    HandsAndFaceOptions parts;
+    parts.num_threads = options.blazepose.num_threads;
+    if (options.hands_and_faces == HandsAndFaceChoice::kOn) parts.min_side_px = 0;
+    try {
+      hands_and_faces_.emplace(options.models, parts);
+    } catch (const std::runtime_error& error) {
+      if (options.hands_and_faces == HandsAndFaceChoice::kOn) throw;
+      why_not_ = error.what();
+    }
+  }
 
   [[nodiscard]] const KeypointConvention& convention() const override { return MediaPipe33(); }
 
   std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames) override {
     std::vector<std::vector<FramePerson>> result;
-    for (std::vector<DetectedPose>& poses : detector_.Detect(frames)) {
+    std::vector<std::vector<DetectedPose>> detected = detector_.Detect(frames);
+    for (std::vector<DetectedPose>& poses : detected) {
       std::vector<FramePerson>& people = result.emplace_back();
       for (DetectedPose& pose : poses) people.push_back({ToPerson(pose), std::move(pose.mask)});
+    }
+    if (hands_and_faces_) {
+      auto found = hands_and_faces_->Detect(frames, detected);
+      for (size_t f = 0; f < found.size(); ++f) {
+        for (size_t i = 0; i < found[f].size(); ++i) result[f][i].person.hands_and_face = std::move(found[f][i]);
+      }
     }
     return result;
   }
 
-  [[nodiscard]] PeopleDetectorSummary summary() const override { return detector_.summary(); }
+  [[nodiscard]] PeopleDetectorSummary summary() const override {
+    PeopleDetectorSummary summary = detector_.summary();
+    if (hands_and_faces_) summary.hands_and_faces = hands_and_faces_->summary();
+    summary.hands_and_faces.why_not = why_not_;
+    return summary;
+  }
 
  private:
   PeopleDetector detector_;
+  std::optional<HandsAndFaceDetector> hands_and_faces_;
+  std::string why_not_;
 };
 
 /// At most so many, the first ones.
@@ -67,7 +92,7 @@ class YoloPoseFrames : public FrameDetector {
     ParallelFor(int(frames.size()), options_.num_threads, [&](int i) {
       std::vector<YoloPerson> found = model_.FindPeople(frames[size_t(i)]);
       KeepFirst(options_.max_people, &found);
-      for (YoloPerson& person : found) result[size_t(i)].push_back({{std::move(person.points)}, {}});
+      for (YoloPerson& person : found) result[size_t(i)].push_back({{.points = std::move(person.points)}, {}});
     });
     summary_.frames += int(frames.size());
     summary_.regions += int(frames.size());
@@ -161,8 +186,10 @@ std::unique_ptr<FrameDetector> MakeFrameDetector(const FrameDetectorOptions& opt
   BODYLOOM_CHECK(options.blazepose.IsValid(), "people detector: an option is outside its range");
   if (options.pose_model.empty()) {
     BODYLOOM_CHECK(options.box_model.empty(), options.box_model, ": finds people for RTMPose, which is not given");
-    return std::make_unique<BlazePoseFrames>(options.models, options.blazepose);
+    return std::make_unique<BlazePoseFrames>(options);
   }
+  BODYLOOM_CHECK(options.hands_and_faces != HandsAndFaceChoice::kOn, options.pose_model,
+                 ": hands and faces are found by way of BlazePose's landmarks");
   BODYLOOM_CHECK(!options.blazepose.masks, options.pose_model, ": a network of landmarks gives no masks");
   KeypointModel model(options.pose_model);
   if (model.family() == KeypointFamily::kYoloBoxes) {

@@ -2,6 +2,7 @@
 /// Detects people with landmarks in the frames of a clip, by one of several networks.
 ///
 ///   BlazePose (people_detector.h)      follows people from frame to frame; 33 landmarks and a mask
+///                                      one region a hand and a face (hands_and_face_detector.h)
 ///   YOLO-pose (keypoint_model.h)       finds everybody in a frame in one pass
 ///   RTMPose (keypoint_model.h)         finds the landmarks of one person in a box, which comes from a YOLO network if
 ///                                      one is given, else from BlazePose's landmarks (VisibleRectangle())
@@ -25,7 +26,9 @@ struct FrameDetectorOptions {
   std::string models;               ///< folder of BlazePose's networks; empty: where they are installed (model_files.h)
   PeopleDetectorOptions blazepose;  ///< max_people and num_threads count for the others too
   std::string pose_model;           ///< an ONNX file in place of BlazePose; empty: BlazePose
-  std::string box_model;            ///< an ONNX file that finds people for RTMPose; empty: BlazePose does
+  /// Hands and faces of the people whom BlazePose finds; none with `pose_model`.
+  HandsAndFaceChoice hands_and_faces = HandsAndFaceChoice::kOff;
+  std::string box_model;  ///< an ONNX file that finds people for RTMPose; empty: BlazePose does
 };
 
 struct FramePerson {
@@ -46,7 +49,7 @@ class FrameDetector {
 };
 
 /// Throws std::runtime_error naming a file that is missing, no such network or no use here, std::invalid_argument for
-/// options that are not valid, for masks with `pose_model`, and for a `box_model` that no network needs.
+/// options that are not valid, for masks or hands (kOn) with `pose_model`, and for a `box_model` that no network needs.
 std::unique_ptr<FrameDetector> MakeFrameDetector(const FrameDetectorOptions& options);
 
 /// "heavy", or the name of the ONNX file without its folder.

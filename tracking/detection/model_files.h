@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Locates the pose detector's networks: BlazePose of MediaPipe, four .tflite files of the npm package @mediapipe/pose
-/// (cmake/models.txt: version, checksums, licence). They are not part of this project; `./dev models` fetches them.
+/// Locates the detector's networks: BlazePose, hands' and faces' landmarks of MediaPipe, .tflite files of the npm
+/// package @mediapipe/holistic (cmake/models.txt: version, checksums, licence). They are not part of this project;
+/// `./dev models` fetches them.
 #pragma once
 
 #include <string>
@@ -14,6 +15,12 @@ inline constexpr const char* kPoseDetectorFile = "pose_solution_packed_assets.da
 inline constexpr const char* kPoseLandmarkLiteFile = "pose_landmark_lite.tflite";
 inline constexpr const char* kPoseLandmarkFullFile = "pose_landmark_full.tflite";
 inline constexpr const char* kPoseLandmarkHeavyFile = "pose_landmark_heavy.tflite";
+/// Narrows a hand's region: input 1×256×256×3 in [0, 1].
+inline constexpr const char* kHandRegionFile = "hand_recrop.tflite";
+/// 21 landmarks of a hand: input 1×224×224×3 in [0, 1].
+inline constexpr const char* kHandLandmarkFile = "hand_landmark_full.tflite";
+/// 468 landmarks of a face: input 1×192×192×3 in [0, 1].
+inline constexpr const char* kFaceLandmarkFile = "face_landmark.tflite";
 
 /// The folders that are searched, in this order. `folder` is the user's choice and `variable` the value of the
 /// environment's BODYLOOM_MODELS: the first of the two that is not empty is the only folder. Otherwise, for the program

@@ -28,6 +28,7 @@ double LongerSide(const DetectedPerson& person) {
 
 DetectedPerson Between(const DetectedPerson& before, const DetectedPerson& after, double share) {
   DetectedPerson person = before;
+  person.hands_and_face = nullptr;  // they move too fast to be interpolated
   const auto blend = [share](float a, float b) { return float((1 - share) * a + share * b); };
   for (size_t k = 0; k < person.points.size(); ++k) {
     const Keypoint &a = before.points[k], &b = after.points[k];

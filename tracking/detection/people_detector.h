@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "render/image/image.h"
+#include "tracking/detection/hands_and_face_detector.h"
 #include "tracking/detection/pose_detector.h"
 
 namespace bodyloom {
@@ -34,6 +35,7 @@ struct PeopleDetectorOptions {
 struct PeopleDetectorSummary {
   int frames = 0, searches = 0, regions = 0;        ///< regions evaluated
   double search_seconds = 0, landmark_seconds = 0;  ///< wall time
+  HandsAndFaceSummary hands_and_faces;              ///< of FrameDetector
 };
 
 class PeopleDetector {

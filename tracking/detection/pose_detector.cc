@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/detection/pose_detector.h"
 
-#include <stdexcept>
 #include <utility>
 
-#include "geometry/base/check.h"
 #include "tracking/detection/inference/graph_executor.h"
 #include "tracking/detection/inference/tflite_reader.h"
 #include "tracking/detection/model_files.h"
@@ -25,21 +23,6 @@ constexpr NetworkOfSize kNetworks[] = {
 
 const NetworkOfSize& NetworkOf(PoseNetworkSize size) { return kNetworks[static_cast<size_t>(size)]; }
 
-/// Throws unless the network has an input of size × size colours and outputs of these numbers of values.
-void CheckNetwork(const OperatorGraph& graph, int size, const std::vector<size_t>& outputs) {
-  const std::vector<int64_t> expected = {1, size, size, 3};
-  bool fits = graph.inputs.size() == 1 && graph.tensors[size_t(graph.inputs[0])].shape == expected &&
-              graph.outputs.size() == outputs.size();
-  for (size_t i = 0; fits && i < outputs.size(); ++i) {
-    fits = GraphShapeSize(graph.tensors[size_t(graph.outputs[i])].shape) == outputs[i];
-  }
-  if (!fits) {
-    throw std::runtime_error(Concatenate(graph.name,
-                                         ": another network, expected one of MediaPipe Pose with an input of ", size,
-                                         "x", size, "x3 and ", outputs.size(), " outputs"));
-  }
-}
-
 }  // namespace
 
 std::string ToText(PoseNetworkSize size) { return NetworkOf(size).name; }
@@ -53,12 +36,11 @@ class PoseModels {
 
 std::shared_ptr<const PoseModels> ReadPoseModels(const std::string& folder, PoseNetworkSize size) {
   constexpr size_t n = kPoseNetworkLandmarks;
-  auto models = std::make_shared<PoseModels>(ReadTfliteGraph(FindModelFile(kPoseDetectorFile, folder)),
-                                             ReadTfliteGraph(FindModelFile(NetworkOf(size).file, folder)));
-  CheckNetwork(models->people, kPersonDetectorSize, {size_t(kPersonDetectorAnchors) * 12, kPersonDetectorAnchors});
-  CheckNetwork(models->landmarks, kPoseNetworkSize,
-               {n * 5, 1, size_t(kPoseNetworkSize) * kPoseNetworkSize, n * kPoseHeatmapSize * kPoseHeatmapSize, n * 3});
-  return models;
+  return std::make_shared<PoseModels>(ReadImageNetwork(FindModelFile(kPoseDetectorFile, folder), kPersonDetectorSize,
+                                                       {size_t(kPersonDetectorAnchors) * 12, kPersonDetectorAnchors}),
+                                      ReadImageNetwork(FindModelFile(NetworkOf(size).file, folder), kPoseNetworkSize,
+                                                       {n * 5, 1, size_t(kPoseNetworkSize) * kPoseNetworkSize,
+                                                        n * kPoseHeatmapSize * kPoseHeatmapSize, n * 3}));
 }
 
 class PoseDetector::Networks {

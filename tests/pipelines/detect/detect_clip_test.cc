@@ -9,17 +9,20 @@
 #include <cmath>
 #include <filesystem>
 
+#include "data_tools/formats/atomic_file.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/part_labels.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
+#include "tests/tracking/detection/models_there.h"
 
 namespace bodyloom::detect_clip_test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 class DetectClipOnRealVideo : public ::testing::Test {
@@ -75,6 +78,43 @@ TEST_F(DetectClipOnRealVideo, ResultsDoNotDependOnTheNumberOfThreads) {
   request.detect.detector.blazepose.num_threads = 1;
   DetectClip(request);
   EXPECT_EQ(FileBytes(request.out), two);
+}
+
+TEST_F(DetectClipOnRealVideo, HandsAndFacesStandBesideTheLandmarks) {
+  DetectClipRequest request = Squats();
+  request.detect.span.to_s = 0.7;
+  const DetectClipReport without = DetectClip(request);
+  const std::string bytes = ReadFileBytes(request.out);
+  EXPECT_TRUE(LoadPersonDetections(request.out).hands_and_face.empty());
+  EXPECT_THAT(ToText(without) + ToJson(without), Not(HasSubstr("hands")));
+
+  request.detect.detector.hands_and_faces = HandsAndFaceChoice::kAuto;
+  const std::string networks = folder_ / "body_alone";
+  std::filesystem::create_directory(networks);
+  for (const char* file : {kPoseDetectorFile, kPoseLandmarkFullFile}) {
+    std::filesystem::create_symlink(std::filesystem::absolute(FindModelFile(file)), networks + "/" + file);
+  }
+  request.detect.detector.models = networks;
+  EXPECT_THAT(ToText(DetectClip(request)), HasSubstr("hands    not looked for: hand_recrop.tflite"));
+  EXPECT_EQ(ReadFileBytes(request.out), bytes) << "without their networks as without asking for them";
+  request.detect.detector.hands_and_faces = HandsAndFaceChoice::kOn;
+  EXPECT_THAT([&] { DetectClip(request); }, ThrowsMessage<std::runtime_error>(HasSubstr("hand_recrop.tflite")));
+
+  if (!HandModelsAreThere()) GTEST_SKIP() << "no networks of hands; ./dev models fetches them";
+  request.detect.detector.models.clear();
+  const DetectClipReport report = DetectClip(request);
+  EXPECT_EQ(report.landmarks->detector.hands_and_faces.hands.parts, 2 * report.frames);
+  EXPECT_EQ(report.landmarks->detector.hands_and_faces.faces.found, report.frames);
+  EXPECT_THAT(ToText(report), HasSubstr("faces    "));
+  EXPECT_THAT(ToJson(report), HasSubstr("\"hands\": {"));
+  const PersonDetections found = LoadPersonDetections(request.out);
+  ASSERT_EQ(found.hands_and_face.num_frames(), report.frames);
+  for (const auto& frame : found.hands_and_face.frames) EXPECT_TRUE(frame && frame->face);
+
+  // Nothing would hold them.
+  request.out.clear();
+  request.json = folder_ / "report.json";
+  EXPECT_EQ(DetectClip(request).landmarks->detector.hands_and_faces.hands.parts, 0);
 }
 
 TEST_F(DetectClipOnRealVideo, TheMaskIsWhereTheLandmarksAre) {

@@ -64,8 +64,9 @@ TEST(ModelFiles, AreThoseOfTheList) {
   for (std::string line; std::getline(list, line);) {
     if (line.rfind("file ", 0) == 0) names.push_back(line.substr(6, line.find(' ', 6) - 6));
   }
-  EXPECT_EQ(names, (std::vector<std::string>{kPoseDetectorFile, kPoseLandmarkLiteFile, kPoseLandmarkFullFile,
-                                             kPoseLandmarkHeavyFile}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{kPoseDetectorFile, kPoseLandmarkLiteFile, kPoseLandmarkFullFile,
+                                      kPoseLandmarkHeavyFile, kHandRegionFile, kHandLandmarkFile, kFaceLandmarkFile}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -31,6 +32,9 @@ TEST(FillBetween, SteadyMotionComesBackWhateverTheFramesAre) {
   const PeopleSequence truth = Passing({0, 0.1, 0.25, 0.3, 0.5, 0.55, 0.9});
   const std::vector<char> detected = {1, 0, 0, 1, 1, 0, 1};
   PeopleSequence people = truth;
+  for (auto& frame : people.frames) {
+    for (DetectedPerson& person : frame) person.hands_and_face = std::make_shared<const HandsAndFace>();
+  }
   for (size_t t = 0; t < detected.size(); ++t) {
     if (!detected[t]) people.frames[t].clear();
   }
@@ -40,6 +44,7 @@ TEST(FillBetween, SteadyMotionComesBackWhateverTheFramesAre) {
     for (const DetectedPerson& expected : truth.frames[t]) {
       const DetectedPerson& found =
           people.frames[t][std::abs(people.frames[t][0].points[0].y - expected.points[0].y) < 1 ? 0 : 1];
+      EXPECT_EQ(found.hands_and_face != nullptr, detected[t] != 0) << t;
       for (size_t k = 0; k < 2; ++k) {
         EXPECT_NEAR(found.points[k].x, expected.points[k].x, 1e-3) << t;
         EXPECT_NEAR(found.points[k].y, expected.points[k].y, 1e-3) << t;

@@ -26,6 +26,7 @@ OperatorFunction FindOperator(const std::string& name) {
         {"Add Sub Mul Div Pow Max Min Equal", One<RunBinary>},
         {"Where", One<RunWhere>},
         {"HardSigmoid HardSwish Relu LeakyRelu Tanh Sqrt Exp Abs Neg Floor Clip", One<RunUnary>},
+        {"PRelu", One<RunPRelu>},
         {"ReduceSum ReduceMean ReduceMax ReduceL2", One<RunReduce>},
         {"Softmax", One<RunSoftmax>},
         {"Concat", One<RunConcat>},

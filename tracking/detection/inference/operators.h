@@ -116,6 +116,8 @@ GraphTensor RunBinary(const OperatorArguments& arguments);
 GraphTensor RunWhere(const OperatorArguments& arguments);
 /// HardSigmoid, HardSwish, Relu, LeakyRelu, Tanh, Sqrt, Exp, Abs, Neg, Floor, Clip.
 GraphTensor RunUnary(const OperatorArguments& arguments);
+/// PRelu: x < 0 becomes slope · x, with the slopes (input 1) broadcast to x.
+GraphTensor RunPRelu(const OperatorArguments& arguments);
 /// Minimum and maximum of Clip.
 std::pair<float, float> ClipBounds(const OperatorArguments& arguments);
 /// ReduceSum, ReduceMean, ReduceMax, ReduceL2; all axes when none are named.

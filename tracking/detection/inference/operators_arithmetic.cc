@@ -281,6 +281,17 @@ GraphTensor RunUnary(const OperatorArguments& arguments) {
   });
 }
 
+GraphTensor RunPRelu(const OperatorArguments& arguments) {
+  const GraphTensor &x = arguments.FloatInput(0), &slopes = arguments.FloatInput(1);
+  if (BroadcastShape(x.shape, slopes.shape) != x.shape) {
+    throw std::runtime_error("slopes of " + GraphShapeText(slopes.shape) + " for " + GraphShapeText(x.shape));
+  }
+  const NewNumbers<float> result = arguments.New<float>(x.size());
+  Combine(Operands<float>{x.floats, slopes.floats, x.shape, slopes.shape, x.shape}, result,
+          [](float value, float slope) { return std::max(value, 0.0F) + slope * std::min(value, 0.0F); });
+  return {x.shape, result};
+}
+
 GraphTensor RunReduce(const OperatorArguments& arguments) {
   const std::string& op = arguments.node().op;
   GraphTensor result = arguments.FloatInput(0);

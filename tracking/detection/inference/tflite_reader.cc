@@ -23,6 +23,7 @@ constexpr size_t kMaxRank = 4;
 constexpr size_t kMaxTensor = size_t{1} << 24, kMaxComputed = size_t{1} << 28;
 constexpr size_t kMaxJoined = 64;  // inputs of a CONCATENATION
 constexpr int kMaxWindow = 64;     // of a pooling
+constexpr int kMaxStride = 3;
 constexpr int kDequantize = 6, kDensify = 124;
 
 /// Code and names of an operator, and its number of inputs. `options` is the type number of its table in the union of
@@ -39,15 +40,26 @@ constexpr KnownOperator kKnown[] = {{TfliteKind::kAdd, 0, "ADD", "Add", 2, 2, 11
                                     {TfliteKind::kConv2d, 3, "CONV_2D", "Conv", 2, 3, 1},
                                     {TfliteKind::kDepthwiseConv2d, 4, "DEPTHWISE_CONV_2D", "Conv", 2, 3, 2},
                                     {TfliteKind::kDepthToSpace, 5, "DEPTH_TO_SPACE", "DepthToSpace", 1, 1, 94},
+                                    {TfliteKind::kFullyConnected, 9, "FULLY_CONNECTED", "Gemm", 2, 3, 8},
                                     {TfliteKind::kLogistic, 14, "LOGISTIC", "Sigmoid", 1, 1, 0},
                                     {TfliteKind::kMaxPool2d, 17, "MAX_POOL_2D", "MaxPool", 1, 1, 5},
                                     {TfliteKind::kReshape, 22, "RESHAPE", "Reshape", 2, 2, 0},
                                     {TfliteKind::kResizeBilinear, 23, "RESIZE_BILINEAR", "Resize", 2, 2, 15},
-                                    {TfliteKind::kPad, 34, "PAD", "Pad", 2, 2, 0}};
+                                    {TfliteKind::kPad, 34, "PAD", "Pad", 2, 2, 0},
+                                    {TfliteKind::kMean, 40, "MEAN", "ReduceMean", 2, 2, 27},
+                                    {TfliteKind::kStridedSlice, 45, "STRIDED_SLICE", "Slice", 4, 4, 32},
+                                    {TfliteKind::kPrelu, 54, "PRELU", "PRelu", 2, 2, 0}};
 
-/// True if the second input of the operator is an int32 constant.
+/// True if the inputs of the operator after the first are int32 constants.
 bool TakesNumbers(TfliteKind kind) {
-  return kind == TfliteKind::kPad || kind == TfliteKind::kReshape || kind == TfliteKind::kResizeBilinear;
+  return kind == TfliteKind::kMean || kind == TfliteKind::kPad || kind == TfliteKind::kReshape ||
+         kind == TfliteKind::kResizeBilinear || kind == TfliteKind::kStridedSlice;
+}
+
+/// True if they are float constants.
+bool TakesWeights(TfliteKind kind) {
+  return kind == TfliteKind::kConv2d || kind == TfliteKind::kDepthwiseConv2d || kind == TfliteKind::kFullyConnected ||
+         kind == TfliteKind::kPrelu;
 }
 
 std::string KnownNames() {
@@ -259,9 +271,8 @@ class TfliteReader {
     const int input = op.inputs.back();
     const Description& description = descriptions_[input];
     OperatorGraph::Tensor& tensor = graph_.tensors[input];
-    const bool convolution = op.kind == TfliteKind::kConv2d || op.kind == TfliteKind::kDepthwiseConv2d;
     const bool numbers = TakesNumbers(op.kind);
-    if (i == 0 || !(convolution || numbers)) {
+    if (i == 0 || !(TakesWeights(op.kind) || numbers)) {
       if (!description.computed) {
         Fail(place, Concatenate("input ", i, " is tensor ", input, ", expected one that was computed before"));
       }
@@ -292,8 +303,8 @@ class TfliteReader {
       op->same_padding = padding == 0;
       op->stride_w = options->Number<int32_t>(stride_w, 0);
       op->stride_h = options->Number<int32_t>(stride_h, 0);
-      if (op->stride_w < 1 || op->stride_w > 2 || op->stride_h < 1 || op->stride_h > 2) {
-        Fail(place, Concatenate("strides ", op->stride_h, " and ", op->stride_w, ", expected 1 or 2"));
+      if (std::min(op->stride_w, op->stride_h) < 1 || std::max(op->stride_w, op->stride_h) > kMaxStride) {
+        Fail(place, Concatenate("strides ", op->stride_h, " and ", op->stride_w, ", expected 1 to ", kMaxStride));
       }
     };
     const auto activation = [&](int field) {
@@ -345,6 +356,16 @@ class TfliteReader {
       case TfliteKind::kDepthToSpace:
         op->block_size = options->Number<int32_t>(0, 0);
         break;
+      case TfliteKind::kFullyConnected:
+        activation(0);
+        exactly("weights format", options->Number<uint8_t>(1, 0), 0);
+        break;
+      case TfliteKind::kMean:
+        op->keeps_axes = options->Number<uint8_t>(0, 0) != 0;
+        break;
+      case TfliteKind::kStridedSlice:
+        for (int mask = 0; mask < 5; ++mask) exactly("mask", options->Number<int32_t>(mask, 0), 0);
+        break;
       case TfliteKind::kMaxPool2d:
         window(1, 2);
         sides(options->Number<int32_t>(4, 0), options->Number<int32_t>(3, 0));
@@ -356,6 +377,7 @@ class TfliteReader {
         break;
       case TfliteKind::kLogistic:
       case TfliteKind::kPad:
+      case TfliteKind::kPrelu:
       case TfliteKind::kReshape:
         break;
     }
@@ -385,6 +407,7 @@ class TfliteReader {
     switch (op.kind) {
       case TfliteKind::kAdd:
       case TfliteKind::kLogistic:
+      case TfliteKind::kPrelu:
         break;
       case TfliteKind::kConcatenation:
         set("axis", {op.axis});
@@ -402,6 +425,13 @@ class TfliteReader {
       case TfliteKind::kDepthToSpace:
         set("blocksize", {op.block_size});
         break;
+      case TfliteKind::kFullyConnected:
+        set("transB", {1});
+        break;
+      case TfliteKind::kMean:
+        set("axes", graph_.tensors[op.inputs[1]].constant.ints.Copy());
+        set("keepdims", {op.keeps_axes ? 1 : 0});
+        break;
       case TfliteKind::kMaxPool2d:
         set("kernel_shape", {op.filter_h, op.filter_w});
         set("strides", {op.stride_h, op.stride_w});
@@ -417,6 +447,10 @@ class TfliteReader {
       case TfliteKind::kResizeBilinear:
         node.attributes["mode"] = GraphAttribute::Text("linear");
         set("sizes", out);
+        break;
+      case TfliteKind::kStridedSlice:
+        set("starts", graph_.tensors[op.inputs[1]].constant.ints.Copy());
+        set("ends", graph_.tensors[op.inputs[2]].constant.ints.Copy());
         break;
     }
     if (TakesNumbers(op.kind)) node.inputs.resize(1);  // they are attributes here
@@ -457,6 +491,21 @@ OperatorGraph ParseTfliteGraph(std::string_view bytes, const std::string& name) 
 
 OperatorGraph ReadTfliteGraph(const std::string& path) {
   return ParseTfliteGraph(ReadFileBytes(path, kMaxFileBytes), path);
+}
+
+OperatorGraph ReadImageNetwork(const std::string& path, int size, const std::vector<size_t>& outputs) {
+  OperatorGraph graph = ReadTfliteGraph(path);
+  const std::vector<int64_t> expected = {1, size, size, 3};
+  bool fits = graph.inputs.size() == 1 && graph.tensors[size_t(graph.inputs[0])].shape == expected &&
+              graph.outputs.size() == outputs.size();
+  for (size_t i = 0; fits && i < outputs.size(); ++i) {
+    fits = GraphShapeSize(graph.tensors[size_t(graph.outputs[i])].shape) == outputs[i];
+  }
+  if (!fits) {
+    throw std::runtime_error(Concatenate(graph.name, ": another network, expected one of MediaPipe with an input of ",
+                                         size, "x", size, "x3 and ", outputs.size(), " outputs"));
+  }
+  return graph;
 }
 
 }  // namespace bodyloom

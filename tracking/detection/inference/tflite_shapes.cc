@@ -155,6 +155,68 @@ std::vector<int64_t> SpacedShape(const OperatorGraph& graph, const TfliteOperato
   return {1, CheckedInt(in[1] * block, place), CheckedInt(in[2] * block, place), in[3] / (block * block)};
 }
 
+std::vector<int64_t> ConnectedShape(const OperatorGraph& graph, const TfliteOperator& op, const std::string& place) {
+  const std::vector<int64_t>& in = graph.tensors[op.inputs[0]].shape;
+  const std::vector<int64_t>& weights = graph.tensors[op.inputs[1]].shape;
+  if (in.size() != 2) ThrowFileError(place, "an input of shape " + GraphShapeText(in) + ", expected rows x columns");
+  if (weights.size() != 2 || weights[1] != in[1]) {
+    ThrowFileError(place, Concatenate("weights of shape ", GraphShapeText(weights), ", expected out x ", in[1]));
+  }
+  if (op.inputs.size() > 2 && graph.tensors[op.inputs[2]].shape != std::vector<int64_t>{weights[0]}) {
+    ThrowFileError(place, Concatenate("a bias of shape ", GraphShapeText(graph.tensors[op.inputs[2]].shape),
+                                      ", expected ", weights[0]));
+  }
+  return {in[0], weights[0]};
+}
+
+std::vector<int64_t> AveragedShape(const OperatorGraph& graph, const TfliteOperator& op, const std::string& place) {
+  const std::vector<int64_t>& in = graph.tensors[op.inputs[0]].shape;
+  std::vector<bool> averaged(in.size(), false);
+  for (const int64_t axis : graph.tensors[op.inputs[1]].constant.ints) {
+    if (axis < 0 || axis >= static_cast<int64_t>(in.size()) || averaged[static_cast<size_t>(axis)]) {
+      ThrowFileError(place, Concatenate("axis ", axis, ", expected different ones of 0 to ", in.size() - 1));
+    }
+    averaged[static_cast<size_t>(axis)] = true;
+  }
+  std::vector<int64_t> shape;
+  for (size_t i = 0; i < in.size(); ++i) {
+    if (!averaged[i] || op.keeps_axes) shape.push_back(averaged[i] ? 1 : in[i]);
+  }
+  if (shape.empty()) ThrowFileError(place, "over all axes, expected one that stays");
+  return shape;
+}
+
+std::vector<int64_t> LeakyShape(const OperatorGraph& graph, const TfliteOperator& op, const std::string& place) {
+  const std::vector<int64_t>& in = ImageShape(graph.tensors[op.inputs[0]], place);
+  const std::vector<int64_t>& slopes = graph.tensors[op.inputs[1]].shape;
+  if (slopes != std::vector<int64_t>{1, 1, in[3]}) {
+    ThrowFileError(place, Concatenate("slopes of shape ", GraphShapeText(slopes), ", expected 1x1x", in[3]));
+  }
+  return in;
+}
+
+std::vector<int64_t> SlicedShape(const OperatorGraph& graph, const TfliteOperator& op, const std::string& place) {
+  std::vector<int64_t> shape = graph.tensors[op.inputs[0]].shape;
+  const auto numbers = [&](size_t i) -> const SharedNumbers<int64_t>& {
+    return graph.tensors[op.inputs[i]].constant.ints;
+  };
+  for (size_t i = 1; i < 4; ++i) {
+    if (numbers(i).size() != shape.size()) {
+      ThrowFileError(place,
+                     Concatenate(numbers(i).size(), " numbers for ", shape.size(), " axes, expected one for each"));
+    }
+  }
+  for (size_t axis = 0; axis < shape.size(); ++axis) {
+    const int64_t begin = numbers(1)[axis], end = numbers(2)[axis], step = numbers(3)[axis];
+    if (begin < 0 || end <= begin || end > shape[axis] || step != 1) {
+      ThrowFileError(place, Concatenate("from ", begin, " to ", end, " by ", step, " of axis ", axis,
+                                        ", expected a range within ", shape[axis], " by 1"));
+    }
+    shape[axis] = end - begin;
+  }
+  return shape;
+}
+
 }  // namespace
 
 TflitePads SamePads(int size, int kernel, int stride) {
@@ -181,14 +243,22 @@ std::vector<int64_t> TfliteOutputShape(const OperatorGraph& graph, const TfliteO
       return ConvolvedShape(graph, op, place);
     case TfliteKind::kDepthToSpace:
       return SpacedShape(graph, op, place);
+    case TfliteKind::kFullyConnected:
+      return ConnectedShape(graph, op, place);
     case TfliteKind::kMaxPool2d:
       return PooledShape(graph, op, place);
+    case TfliteKind::kMean:
+      return AveragedShape(graph, op, place);
     case TfliteKind::kPad:
       return PaddedShape(graph, op, place);
+    case TfliteKind::kPrelu:
+      return LeakyShape(graph, op, place);
     case TfliteKind::kReshape:
       return ReshapedShape(graph, op, place);
     case TfliteKind::kResizeBilinear:
       return ResizedShape(graph, op, place);
+    case TfliteKind::kStridedSlice:
+      return SlicedShape(graph, op, place);
   }
   return {};
 }

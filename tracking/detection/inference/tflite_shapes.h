@@ -16,11 +16,15 @@ enum class TfliteKind {
   kConv2d,
   kDepthwiseConv2d,
   kDepthToSpace,
+  kFullyConnected,
   kLogistic,
   kMaxPool2d,
+  kMean,
   kPad,
+  kPrelu,
   kReshape,
-  kResizeBilinear
+  kResizeBilinear,
+  kStridedSlice
 };
 
 struct TfliteOperator {
@@ -33,6 +37,7 @@ struct TfliteOperator {
   int filter_h = 1, filter_w = 1;  ///< of a kernel or of MAX_POOL_2D
   int axis = 0;                    ///< of CONCATENATION, from 0
   int block_size = 1;              ///< of DEPTH_TO_SPACE
+  bool keeps_axes = false;         ///< of MEAN: axes that are averaged stay with length 1
 };
 
 /// Zeros around the rows or the columns of an image.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// BlazePose's networks against TensorFlow Lite's results for a synthetic input: value k = (7·row + 13·column +
-/// 29·channel) mod 256, as k/255 for the landmarks and k/127.5 − 1 for the detector. Skipped without the networks
-/// (`./dev models`).
+/// Networks of body, hands and face against TensorFlow Lite's results for a synthetic input: value k = (7·row +
+/// 13·column + 29·channel) mod 256, as k/255 for the landmarks and k/127.5 − 1 for the detector (docs/lab/hands.md).
+/// Skipped without the networks (`./dev models`).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "data_tools/formats/atomic_file.h"
+#include "geometry/base/check.h"
 #include "tests/data_tools/formats/expect_file_error.h"
 #include "tests/tracking/detection/inference/tflite_reference.h"
 #include "tracking/detection/inference/graph_executor.h"
@@ -188,6 +189,61 @@ TEST(PoseNetworks, Heavy) {
                    {-28.53919, 12.92596},
                    {-10.34958, 8.32931},
                    {0.05565, 0.56821}});
+}
+
+struct SmallNetwork {
+  const char* file;
+  size_t operators;
+  int64_t side;
+  std::vector<Spread> spreads;             ///< of each output
+  std::vector<std::vector<double>> first;  ///< numbers of each
+  std::vector<double> tolerances;
+};
+
+void ExpectSmallNetwork(const SmallNetwork& expected) {
+  const std::optional<OperatorGraph> model = ModelIfThere(expected.file);
+  if (!model) GTEST_SKIP() << expected.file << " is not there; ./dev models fetches it";
+  EXPECT_EQ(NumOperators(*model), expected.operators);
+  const GraphExecutor network(*model);
+  ASSERT_EQ(network.input_shape(), (std::vector<int64_t>{1, expected.side, expected.side, 3}));
+  const std::vector<float> input = Pattern(network.input_shape(), false);
+  const std::vector<GraphTensor> outputs = network.Run(input);
+  const std::vector<std::vector<float>> exact = RunReference(*model, input);
+  ASSERT_EQ(outputs.size(), expected.spreads.size());
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    const std::string what = Concatenate(expected.file, " output ", i);
+    ExpectSpread(outputs[i], expected.spreads[i], 1e-4, what);
+    ExpectFirst(outputs[i], expected.first[i], expected.tolerances[i], what);
+    const std::vector<float>& sums = exact[static_cast<size_t>(model->outputs[i])];
+    ASSERT_EQ(outputs[i].floats.size(), sums.size());
+    for (size_t j = 0; j < sums.size(); ++j) EXPECT_NEAR(outputs[i].floats[j], sums[j], expected.tolerances[i]) << what;
+  }
+}
+
+TEST(PoseNetworks, HandLandmarks) {
+  ExpectSmallNetwork({kHandLandmarkFile,
+                      63,
+                      224,
+                      {{72.03399, 50.32606}, {0.00576, 0}, {0.70485, 0}, {-0.00078, 0.02291}},
+                      {{112.44524, 171.98097, 0.0, 106.49697, 155.80685, 2.91779},
+                       {0.00576},
+                       {0.70485},
+                       {-0.00289, 0.05152, 0.06711, -0.00211, 0.03616, 0.06231}},
+                      {1e-3, 1e-5, 1e-5, 1e-5}});
+}
+
+TEST(PoseNetworks, HandRegion) {
+  ExpectSmallNetwork(
+      {kHandRegionFile, 63, 256, {{149.82664, 33.34831}}, {{131.74872, 120.04915, 141.42900, 206.07971}}, {1e-3}});
+}
+
+TEST(PoseNetworks, FaceLandmarks) {
+  ExpectSmallNetwork({kFaceLandmarkFile,
+                      97,
+                      192,
+                      {{64.97704, 51.43574}, {-10.00724, 0}},
+                      {{89.62776, 124.86030, -6.42849, 93.07915, 114.68202, -18.35137}, {-10.00724}},
+                      {1e-3, 1e-4}});
 }
 
 TEST(PoseNetworks, HowManyThreadsOpenCvUsesChangesRoundingAlone) {

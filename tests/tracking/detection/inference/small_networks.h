@@ -11,7 +11,8 @@
 namespace bodyloom {
 
 /// The first has three outputs (a row of numbers, their logistic, an image independent of the others) and one input,
-/// 1×8×8×3, like BlazePose's landmark networks; the second is built like its detector.
+/// 1×8×8×3, like BlazePose's landmark networks; the second is built like its detector, the third like the networks of
+/// hands and faces.
 inline std::vector<TfliteWriter> SmallNetworks() {
   using Writer = TfliteWriter;
   Writer landmarks;
@@ -45,7 +46,20 @@ inline std::vector<TfliteWriter> SmallNetworks() {
     const int coarse = w.Apply(Writer::kReshape, {sparse, w.Ints({3}, {1, -1, 2})}, {1, 128, 2});
     w.outputs = {w.Apply(Writer::kConcatenation, {fine, coarse}, {1, 256, 2}, {{0, 1}, {1, 0}})};
   }
-  return {landmarks, detector};
+  Writer hand;
+  {
+    Writer& w = hand;
+    const int input = w.Input({1, 8, 8, 3});
+    const int down = w.Conv(input, {4, 3, 3, 3}, {1, 3, 3, 4}, true, 3);
+    const int slopes = w.Floats({1, 1, 4}, SomeFloats(4, 3), Writer::Storage::kFloat16);
+    const int leaky = w.Apply(Writer::kPrelu, {down, slopes}, {1, 3, 3, 4});
+    const int begin = w.Ints({4}, {0, 0, 0, 1}), end = w.Ints({4}, {1, 3, 3, 4}), step = w.Ints({4}, {1, 1, 1, 1});
+    const int part = w.Apply(Writer::kStridedSlice, {leaky, begin, end, step}, {1, 3, 3, 3}, {{0, 0}});
+    const int mean = w.Apply(Writer::kMean, {part, w.Ints({2}, {1, 2})}, {1, 3}, {{0, 0}});
+    const int weights = w.Floats({2, 3}, SomeFloats(6, 8), Writer::Storage::kFloat16), bias = w.Floats({2}, {1, -2});
+    w.outputs = {w.Apply(Writer::kFullyConnected, {mean, weights, bias}, {1, 2}, {{0, 0}})};
+  }
+  return {landmarks, detector, hand};
 }
 
 /// A constant's values, to compare.

@@ -211,6 +211,55 @@ TEST(TfliteGraphs, ConcatenationAlongEveryAxis) {
   ExpectAsReference(writer, "rows");
 }
 
+TEST(TfliteGraphs, SlopesOfNegativeNumbers) {
+  for (const auto storage : {Writer::Storage::kFloat32, Writer::Storage::kFloat16}) {
+    Writer writer;
+    const int input = writer.Input({1, 5, 6, 7}), slopes = writer.Floats({1, 1, 7}, SomeFloats(7, 3), storage);
+    const int conv = writer.Conv(input, {7, 3, 3, 7}, {1, 5, 6, 7}, true, 1);
+    const int sum = writer.Apply(Writer::kAdd, {conv, input}, {1, 5, 6, 7}, {{0, 0}});
+    const int leaky = writer.Apply(Writer::kPrelu, {sum, slopes}, {1, 5, 6, 7});
+    writer.outputs = {writer.Apply(Writer::kPrelu, {input, slopes}, {1, 5, 6, 7}), leaky,
+                      writer.Apply(Writer::kAdd, {leaky, sum}, {1, 5, 6, 7}, {{0, 0}})};
+    ExpectAsReference(writer, "slopes");
+  }
+}
+
+TEST(TfliteGraphs, MeansAndFullConnections) {
+  const std::vector<std::pair<std::vector<int32_t>, std::vector<int>>> cases = {
+      {{1, 2}, {1, 6}}, {{2, 1}, {1, 6}}, {{1, 2, 3}, {1}}, {{2}, {1, 4, 6}}, {{0, 1, 2}, {6}}};
+  for (const auto& [axes, shape] : cases) {
+    Writer writer;
+    const int input = writer.Input({1, 4, 5, 6}), list = writer.Ints({static_cast<int>(axes.size())}, axes);
+    writer.outputs = {writer.Apply(Writer::kMean, {input, list}, shape, {{0, 0}})};
+    ExpectAsReference(writer, Concatenate("mean over ", axes.size(), " axes"), 1e-6);
+  }
+  Writer writer;
+  const int input = writer.Input({1, 4, 5, 6}), axes = writer.Ints({2}, {1, 2});
+  const int mean = writer.Apply(Writer::kMean, {input, axes}, {1, 6}, {{0, 0}});
+  const int weights = writer.Floats({9, 6}, SomeFloats(54, 5), Writer::Storage::kFloat16);
+  const int bias = writer.Floats({9}, SomeFloats(9, 6), Writer::Storage::kFloat16);
+  const int clamped = writer.Apply(Writer::kFullyConnected, {mean, weights, bias}, {1, 9}, {{0, 3}});
+  const int rows = writer.Apply(Writer::kReshape, {input, writer.Ints({2}, {20, 6})}, {20, 6});
+  writer.outputs = {clamped, writer.Apply(Writer::kFullyConnected, {mean, weights, bias}, {1, 9}, {{0, 0}}),
+                    writer.Apply(Writer::kFullyConnected, {rows, weights, -1}, {20, 9}, {{0, 0}}),
+                    writer.Apply(Writer::kMean, {input, axes}, {1, 1, 1, 6}, {{0, 1}})};
+  ExpectAsReference(writer, "full connections", 1e-6);
+}
+
+TEST(TfliteGraphs, Slices) {
+  Writer writer;
+  const int input = writer.Input({1, 4, 5, 6});
+  const auto slice = [&](const std::vector<int32_t>& begin, const std::vector<int32_t>& end,
+                         const std::vector<int>& shape) {
+    return writer.Apply(Writer::kStridedSlice,
+                        {input, writer.Ints({4}, begin), writer.Ints({4}, end), writer.Ints({4}, {1, 1, 1, 1})}, shape,
+                        {{0, 0}});
+  };
+  writer.outputs = {slice({0, 0, 0, 0}, {1, 4, 5, 3}, {1, 4, 5, 3}), slice({0, 1, 2, 5}, {1, 3, 5, 6}, {1, 2, 3, 1}),
+                    slice({0, 0, 0, 0}, {1, 4, 5, 6}, {1, 4, 5, 6})};
+  ExpectAsReference(writer, "slices", 0);
+}
+
 TEST(TfliteGraphs, WholeNetworks) {
   for (const Writer& writer : SmallNetworks()) ExpectAsReference(writer, "whole");
 }

@@ -63,6 +63,49 @@ inline std::vector<std::vector<float>> RunReference(const OperatorGraph& graph, 
       for (const float x : operand(0)) out.push_back(static_cast<float>(1 / (1 + std::exp(-static_cast<double>(x)))));
     } else if (node.op == "Reshape") {
       out = operand(0);
+    } else if (node.op == "PRelu") {  // slopes of the last axis
+      const SharedNumbers<float>& slopes = tensor(1).constant.floats;
+      for (size_t i = 0; i < operand(0).size(); ++i) {
+        const float x = operand(0)[i];
+        out.push_back(x < 0 ? slopes[i % slopes.size()] * x : x);
+      }
+    } else if (node.op == "Gemm") {  // rows · weightsᵀ + bias
+      const auto columns = static_cast<size_t>(tensor(1).shape[1]), results = static_cast<size_t>(tensor(1).shape[0]);
+      for (size_t row = 0; row < operand(0).size() / columns; ++row) {
+        for (size_t to = 0; to < results; ++to) {
+          double sum = node.inputs.size() > 2 ? tensor(2).constant.floats[to] : 0;
+          for (size_t i = 0; i < columns; ++i) {
+            sum += double{operand(0)[row * columns + i]} * tensor(1).constant.floats[to * columns + i];
+          }
+          out.push_back(static_cast<float>(sum));
+        }
+      }
+    } else if (node.op == "ReduceMean" || node.op == "Slice") {
+      // Places of the input, axis by axis: each adds to the result's place that lacks the averaged axes, or is cut
+      // away.
+      const bool slice = node.op == "Slice";
+      const std::vector<int> axes = numbers("axes", {}), starts = numbers("starts", {}), ends = numbers("ends", {});
+      const std::vector<int64_t>& shape = tensor(0).shape;
+      std::vector<double> sums(slice ? 0 : GraphShapeSize(target.shape), 0.0);
+      const double count =
+          static_cast<double>(operand(0).size()) / static_cast<double>(std::max<size_t>(1, sums.size()));
+      for (size_t i = 0; i < operand(0).size(); ++i) {
+        size_t rest = i, block = operand(0).size(), place = 0;
+        bool inside = true;
+        for (size_t axis = 0; axis < shape.size(); ++axis) {
+          block /= static_cast<size_t>(shape[axis]);
+          const size_t at = rest / block;
+          rest %= block;
+          if (slice) {
+            inside = inside && at >= static_cast<size_t>(starts[axis]) && at < static_cast<size_t>(ends[axis]);
+          } else if (std::find(axes.begin(), axes.end(), static_cast<int>(axis)) == axes.end()) {
+            place = place * static_cast<size_t>(shape[axis]) + at;
+          }
+        }
+        if (slice && inside) out.push_back(operand(0)[i]);
+        if (!slice) sums[place] += operand(0)[i] / count;
+      }
+      if (!slice) out.assign(sums.begin(), sums.end());
     } else if (node.op == "Concat") {  // blocks of what lies behind the axis, input by input
       size_t before = 1;
       for (int i = 0; i < numbers("axis", {})[0]; ++i) before *= static_cast<size_t>(target.shape[size_t(i)]);

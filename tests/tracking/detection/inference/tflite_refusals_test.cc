@@ -53,7 +53,7 @@ TEST(TfliteReader, RefusesWhatItDoesNotRun) {
           {"model: schema version 2, expected 3", [](Writer* w) { w->version = 2; }},
           {"model: 2 subgraphs, expected 1", [](Writer* w) { w->num_graphs = 2; }},
           {"model: 0 subgraphs, expected 1", [](Writer* w) { w->num_graphs = 0; }},
-          {"operator 0: operator code 9, expected ADD", [](Writer* w) { w->codes[0] = FlatNode::Table().Set(0, 9); }},
+          {"operator 0: operator code 10, expected ADD", [](Writer* w) { w->codes[0] = FlatNode::Table().Set(0, 10); }},
           {"operator code 151, expected", [](Writer* w) { w->codes[0] = FlatNode::Table().Set(0, 127).Set(3, 151); }},
           {"operator code 32 'Own?Op', expected",
            [](Writer* w) { w->codes[0] = FlatNode::Table().Set(0, 32).Set(1, FlatNode::Text("Own\nOp")); }},
@@ -106,13 +106,13 @@ TEST(TfliteReader, RefusesWhatItDoesNotRun) {
            [](Writer* w) {
              SetOptions(w, {{0, 2}, {1, 1}, {2, 1}});
            }},
-          {"strides 0 and 0, expected 1 or 2",
+          {"strides 0 and 0, expected 1 to 3",
            [](Writer* w) {
              SetOptions(w, {{0, 0}});
            }},
-          {"strides 3 and 1, expected 1 or 2",
+          {"strides 4 and 1, expected 1 to 3",
            [](Writer* w) {
-             SetOptions(w, {{1, 1}, {2, 3}});
+             SetOptions(w, {{1, 1}, {2, 4}});
            }},
           {"activation 1, expected 0 (none) or 3 (relu6)",
            [](Writer* w) {
@@ -297,6 +297,74 @@ TEST(TfliteReader, RefusesOperandsThatDoNotFit) {
        On({1, 3, 3, 1},
           [](Writer* w) {
             return w->Apply(Writer::kDequantize, {0}, {1, 3, 3, 1});
+          })},
+      {"(FULLY_CONNECTED): an input of shape 1x3x3x1, expected rows x columns",
+       On({1, 3, 3, 1},
+          [](Writer* w) {
+            return w->Apply(Writer::kFullyConnected, {0, w->Floats({2, 1}, {1, 2})}, {9, 2}, {{0, 0}});
+          })},
+      {"(FULLY_CONNECTED): weights of shape 2x4, expected out x 9",
+       On({1, 9},
+          [](Writer* w) {
+            return w->Apply(Writer::kFullyConnected, {0, w->Floats({2, 4}, SomeFloats(8, 1))}, {1, 2}, {{0, 0}});
+          })},
+      {"(FULLY_CONNECTED): a bias of shape 3, expected 2",
+       On({1, 2},
+          [](Writer* w) {
+            return w->Apply(Writer::kFullyConnected,
+                            {0, w->Floats({2, 2}, SomeFloats(4, 1)), w->Floats({3}, {1, 2, 3})}, {1, 2}, {{0, 0}});
+          })},
+      {"(FULLY_CONNECTED): weights format 1, expected 0",
+       On({1, 2},
+          [](Writer* w) {
+            return w->Apply(Writer::kFullyConnected, {0, w->Floats({2, 2}, SomeFloats(4, 1))}, {1, 2}, {{1, 1}});
+          })},
+      {"(MEAN): axis 4, expected different ones of 0 to 3",
+       On({1, 3, 3, 1},
+          [](Writer* w) {
+            return w->Apply(Writer::kMean, {0, w->Ints({1}, {4})}, {1, 3, 3}, {{0, 0}});
+          })},
+      {"(MEAN): axis 2, expected different ones of 0 to 3",
+       On({1, 3, 3, 1},
+          [](Writer* w) {
+            return w->Apply(Writer::kMean, {0, w->Ints({2}, {2, 2})}, {1, 3, 1}, {{0, 0}});
+          })},
+      {"(MEAN): over all axes, expected one that stays",
+       On({1, 3},
+          [](Writer* w) {
+            return w->Apply(Writer::kMean, {0, w->Ints({2}, {0, 1})}, {1}, {{0, 0}});
+          })},
+      {"(PRELU): slopes of shape 1x1x2, expected 1x1x1",
+       On({1, 3, 3, 1},
+          [](Writer* w) {
+            return w->Apply(Writer::kPrelu, {0, w->Floats({1, 1, 2}, {1, 2})}, {1, 3, 3, 1});
+          })},
+      {"(STRIDED_SLICE): 3 numbers for 4 axes, expected one for each",
+       On({1, 3, 3, 1},
+          [](Writer* w) {
+            const int three = w->Ints({3}, {0, 0, 0}), four = w->Ints({4}, {1, 1, 1, 1});
+            return w->Apply(Writer::kStridedSlice, {0, three, four, four}, {1, 1, 1, 1}, {{0, 0}});
+          })},
+      {"(STRIDED_SLICE): from 0 to 4 by 1 of axis 1, expected a range within 3 by 1",
+       On({1, 3, 3, 1},
+          [](Writer* w) {
+            const int begin = w->Ints({4}, {0, 0, 0, 0}), end = w->Ints({4}, {1, 4, 3, 1}),
+                      one = w->Ints({4}, {1, 1, 1, 1});
+            return w->Apply(Writer::kStridedSlice, {0, begin, end, one}, {1, 4, 3, 1}, {{0, 0}});
+          })},
+      {"(STRIDED_SLICE): from 0 to 3 by 2 of axis 2, expected a range within 3 by 1",
+       On({1, 3, 3, 1},
+          [](Writer* w) {
+            const int begin = w->Ints({4}, {0, 0, 0, 0}), end = w->Ints({4}, {1, 3, 3, 1}),
+                      two = w->Ints({4}, {1, 1, 2, 1});
+            return w->Apply(Writer::kStridedSlice, {0, begin, end, two}, {1, 3, 2, 1}, {{0, 0}});
+          })},
+      {"(STRIDED_SLICE): mask 1, expected 0",
+       On({1, 3, 3, 1},
+          [](Writer* w) {
+            const int begin = w->Ints({4}, {0, 0, 0, 0}), end = w->Ints({4}, {1, 3, 3, 1}),
+                      one = w->Ints({4}, {1, 1, 1, 1});
+            return w->Apply(Writer::kStridedSlice, {0, begin, end, one}, {1, 3, 3, 1}, {{1, 1}});
           })},
       {"(DENSIFY): of tensor 1, expected a sparse constant",
        On({1, 3, 3, 1},

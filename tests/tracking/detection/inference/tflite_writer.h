@@ -45,11 +45,15 @@ class TfliteWriter {
     kDepthwiseConv2d = 4,
     kDepthToSpace = 5,
     kDequantize = 6,
+    kFullyConnected = 9,
     kLogistic = 14,
     kMaxPool2d = 17,
     kReshape = 22,
     kResizeBilinear = 23,
     kPad = 34,
+    kMean = 40,
+    kStridedSlice = 45,
+    kPrelu = 54,
     kDensify = 124
   };
   enum class Storage { kFloat32, kFloat16, kSparse };
@@ -109,8 +113,8 @@ class TfliteWriter {
   }
   void Operator(int code, const std::vector<int32_t>& operands, int output, const Options& options = {}) {
     static const std::map<int, int> kKinds = {
-        {kAdd, 11},          {kConcatenation, 10}, {kConv2d, 1},         {kDepthwiseConv2d, 2},
-        {kDepthToSpace, 94}, {kMaxPool2d, 5},      {kResizeBilinear, 15}};
+        {kAdd, 11},           {kConcatenation, 10}, {kConv2d, 1}, {kDepthwiseConv2d, 2}, {kDepthToSpace, 94},
+        {kFullyConnected, 8}, {kMaxPool2d, 5},      {kMean, 27},  {kResizeBilinear, 15}, {kStridedSlice, 32}};
     FlatNode table = FlatNode::Table();
     table.Set(0, static_cast<int32_t>(codes.size()));
     codes.push_back(FlatNode::Table().Set(code < 127 ? 0 : 3, code));
