@@ -155,12 +155,12 @@ constexpr double kFarthest = 0.1;  ///< of the atlas: pixels farther apart there
 constexpr double kInside = 1e-6;   ///< of barycentric coordinates: beyond the triangle
 constexpr double kHalfAPixel = 0.5;
 
-struct Corner {
+struct MapCorner {
   Vector2d pixel, texel;
 };
 
 /// Texels whose centres lie within the triangle, or at most `beyond` outside it, and that have no position yet.
-void FillTriangle(const std::array<Corner, 3>& corners, double beyond, uint8_t part,
+void FillTriangle(const std::array<MapCorner, 3>& corners, double beyond, uint8_t part,
                   std::span<const uint8_t> texel_parts, int U, TexelPlaces* places) {
   const Vector2d a = corners[0].texel, ab = corners[1].texel - a, ac = corners[2].texel - a;
   if (std::max({ab.norm(), ac.norm(), (ab - ac).norm()}) > kFarthest * U) return;
@@ -197,7 +197,7 @@ TexelPlaces TexelsOfPixels(std::span<const float> uv, std::span<const uint8_t> p
   TexelPlaces places = {std::vector<float>(2 * texels, 0), std::vector<float>(texels, 0)};
   const auto corner = [&](int x, int y) {
     const size_t i = size_t(y) * width + x;
-    return Corner{Vector2d(x, y), Vector2d(uv[i] * U - 0.5, (1 - uv[area + i]) * U - 0.5)};
+    return MapCorner{Vector2d(x, y), Vector2d(uv[i] * U - 0.5, (1 - uv[area + i]) * U - 0.5)};
   };
   const auto part = [&](int x, int y) { return parts[size_t(y) * width + x]; };
   // Finally the rim of the pixels that show a part: a pixel covers half a pixel around its centre.
@@ -207,7 +207,7 @@ TexelPlaces TexelsOfPixels(std::span<const float> uv, std::span<const uint8_t> p
         // The diagonal from upper right to lower left is in both halves of the square.
         const uint8_t shared = part(x + 1, y);
         if (shared == 0 || shared != part(x, y + 1)) continue;
-        const Corner right = corner(x + 1, y), below = corner(x, y + 1);
+        const MapCorner right = corner(x + 1, y), below = corner(x, y + 1);
         for (const int k : {0, 1}) {
           if (part(x + k, y + k) != shared) continue;
           FillTriangle({corner(x + k, y + k), right, below}, beyond, shared, texel_parts, U, &places);
