@@ -98,7 +98,8 @@ void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
 
 void AddLearnedOptions(CLI::App& app, TrackSettings* request) {
   TrackSettings& c = *request;
-  app.add_option("--body", c.body, "body model: SMPL, SMPL-H or SMPL-X .pkl or .npz (default: the built-in body)")
+  app.add_option("--body", c.body,
+                 "body model: SMPL, SMPL-H or SMPL-X .pkl or .npz (default: the built-in body; hands: with fingers)")
       ->group(kKnown)
       ->type_name("FILE");
   app.add_option("--stature", c.stature_m,

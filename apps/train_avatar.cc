@@ -54,7 +54,7 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
       "--mask", request->clip.mask,
       "For a video: the person's mask (bodyloom detect --mask, bodyloom run --masks) or DensePose's parts");
   verb->add_option("--out", request->out, "Folder of the run")->required();
-  verb->add_option("--body", request->clip.body, "The track's body (default: the built-in body)");
+  verb->add_option("--body", request->clip.body, "The track's body (default: the built-in body; hands: with fingers)");
   verb->add_option("--train", request->train, "Frames to learn from, FIRST-LAST (default: the first four fifths)");
   verb->add_option("--validate", request->validate, "Frames to judge by (default: the last fifth)");
   CLI::Option* steps = verb->add_option("--steps", request->steps, "Steps, of one frame each")

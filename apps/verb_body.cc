@@ -60,6 +60,7 @@ void AddBodyVerb(CLI::App& app, Action* action, const std::vector<std::string>& 
 
   CLI::App* make = verb->add_subcommand("make", "Builds the built-in body from its cage");
   make->add_option("--out", to_make.out, "the compact body, .npz")->required()->type_name("FILE");
+  make->add_flag("--hands", to_make.hands, "with finger joints, 52 joints in all: the body of --body hands");
   CLI::Option* cage = make->add_option("--cage", to_make.cage, "another cage (default: the one in this program)");
   cage->type_name("FILE");
   CLI::Option* parts = make->add_option("--parts", to_make.parts, "weights, shapes and charts on that cage");

@@ -37,7 +37,7 @@ struct InfoArguments {
 
 void Info(const InfoArguments& arguments, const std::vector<std::string>& command) {
   const CheckBodyRequest& request = arguments.request;
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   if (arguments.check && !request.surface_tools.crossing) ExecBeside("bodyloom-cgal", command);
   std::cout << DescribeBody(*BodyOrBuiltin(request.body));
   if (!arguments.check) return;
@@ -55,7 +55,8 @@ void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>&
   CheckBodyRequest& to_check = arguments->request;
   to_check.surface_tools = std::move(tools);
   CLI::App* info = verb.add_subcommand("info", "Prints what a body file holds and what it lacks");
-  info->add_option("--body,body", to_check.body, "body model (default: the built-in body)")->type_name("FILE");
+  info->add_option("--body,body", to_check.body, "body model (default: the built-in body; hands: with fingers)")
+      ->type_name("FILE");
   CLI::Option* check = info->add_flag("--check", arguments->check, "look for faults of its mesh (below)");
   CLI::Option* track = info->add_option("--track", to_check.track, "also for crossing faces in its poses, .npz");
   track->type_name("FILE")->needs(check);

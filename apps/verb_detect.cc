@@ -46,7 +46,9 @@ void AddDenseOptions(CLI::App* verb, Parsed* parsed) {
   CLI::Option* model = add("--dense-model", &parsed->dense_model, "DensePose as a TorchScript file", "FILE");
   CLI::Option* out = add("--dense-out", &parsed->request.dense, "one person's dense keypoints, .npz", "FILE");
   model->needs(out), out->needs(model);
-  add("--body", &parsed->request.body, "body on whose faces they lie (default: the built-in body)", "FILE")->needs(out);
+  add("--body", &parsed->request.body, "body on whose faces they lie (default: the built-in body; hands: with fingers)",
+      "FILE")
+      ->needs(out);
   add("--device", &parsed->device, "where the network runs", "")
       ->check(CLI::IsMember({"cpu", "cuda"}))
       ->capture_default_str()

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "geometry/base/callbacks.h"
 
@@ -18,6 +19,10 @@ void RequireReadable(const std::string& path, const std::string& what) {
   if (!path.empty() && access(path.c_str(), R_OK) != 0) {
     throw std::runtime_error(path + ": " + std::strerror(errno) + ", expected a readable file (" + what + ")");
   }
+}
+
+void RequireReadableBody(const std::string& body) {
+  if (body != kBodyWithHands) RequireReadable(body, "body model");
 }
 
 void RequireWritable(const std::string& path) {

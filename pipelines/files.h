@@ -12,6 +12,9 @@ namespace bodyloom {
 /// not given, pass. `what` names the option's meaning, as in "detections".
 void RequireReadable(const std::string& path, const std::string& what);
 
+/// The same for a body given as a file, or by the name of a built-in one (data_tools/body/builtin_body.h).
+void RequireReadableBody(const std::string& body);
+
 /// Throws std::runtime_error "path: ..." unless a file could be written at `path`: its folder exists, is writable and
 /// has free space, and `path` is not a folder. Existing files are left untouched. Empty paths pass.
 void RequireWritable(const std::string& path);

@@ -157,8 +157,10 @@ py::array ShapedirsOf(const py::object& self) {
 void BindBody(py::module_& module) {
   py::class_<BodyModel, std::shared_ptr<BodyModel>>(module, "Body", kBodyDoc)
       .def_static(
-          "builtin", [] { return std::const_pointer_cast<BodyModel>(BodyOrBuiltin("")); },
-          py::call_guard<py::gil_scoped_release>(), "The body that ships; built once.")
+          "builtin",
+          [](bool hands) { return std::const_pointer_cast<BodyModel>(BodyOrBuiltin(hands ? kBodyWithHands : "")); },
+          py::kw_only(), py::arg("hands") = false, py::call_guard<py::gil_scoped_release>(),
+          "The body that ships; built once. hands: with SMPL-H's finger joints, 52 in all (also body=\"hands\").")
       .def_static(
           "load",
           [](const Path& path, int max_betas, bool flat_hand_mean) {

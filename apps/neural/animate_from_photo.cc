@@ -90,7 +90,7 @@ void AddAnimateFromPhoto(CLI::App* verb, AnimateFromPhotoArguments* options) {
   AddPhotoOptions(verb, &request);
   verb->add_option("--track", request.track, "The motion: a track, .npz");
   verb->add_option("--out", request.out, "The video, .mp4");
-  verb->add_option("--body", request.photo.body, "The tracks' body (default: the built-in body)");
+  verb->add_option("--body", request.photo.body, "The tracks' body (default: the built-in body; hands: with fingers)");
   verb->add_option("--background", options->background, kPhotoBackgroundHelp)->capture_default_str();
   verb->add_flag("--full-size", request.full_size, kFullSizeHelp);
   verb->add_option("--json", request.json, "Report with times");

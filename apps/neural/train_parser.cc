@@ -43,7 +43,7 @@ void AddTrainParser(CLI::App& train, Action* action) {
   verb->add_option("--data", request->data, "A multi-person dataset (bodyloom synth-people)")->required();
   verb->add_option("--out", request->out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, parser.npz")
       ->required();
-  verb->add_option("--body", request->body, "The people's body (default: the built-in body)");
+  verb->add_option("--body", request->body, "The people's body (default: the built-in body; hands: with fingers)");
   verb->add_option("--size", request->size, "Pixels of the windows that people are shown in")
       ->check(CLI::Range(64, 2048))
       ->capture_default_str();

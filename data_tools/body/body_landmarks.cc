@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/body/body_landmarks.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "geometry/base/check.h"
+#include "geometry/body/hand_skeleton.h"
 
 namespace bodyloom {
 namespace {
@@ -23,6 +26,12 @@ constexpr Row kRows[] = {
     {"left_ankle", -1, -1, 7},         {"right_ankle", -1, -1, 8},         {"left_big_toe", 3216, 5770, -1},
     {"right_big_toe", 6617, 8463, -1}, {"left_small_toe", 3226, 5780, -1}, {"right_small_toe", 6624, 8474, -1},
     {"left_heel", 3387, 8846, -1},     {"right_heel", 6787, 8635, -1}};
+
+/// Fingertips: thumb, index, middle, ring, pinky; left, right.
+constexpr std::array<std::array<int, 5>, 2> kSmplTips = {
+    {{2746, 2319, 2445, 2556, 2673}, {6191, 5782, 5905, 6016, 6133}}};
+constexpr std::array<std::array<int, 5>, 2> kSmplxTips = {
+    {{5361, 4933, 5058, 5169, 5286}, {8079, 7669, 7794, 7905, 8022}}};
 
 }  // namespace
 
@@ -44,6 +53,15 @@ std::vector<Landmark> StandardLandmarks(const BodyModelData& body) {
       }
     }
     landmarks.push_back(std::move(landmark));
+  }
+  const std::string last_finger = HandJointNames(HandSide::kRight).back();
+  if (std::find(body.joint_names.begin(), body.joint_names.end(), last_finger) == body.joint_names.end()) {
+    return landmarks;
+  }
+  for (const HandSide side : {HandSide::kLeft, HandSide::kRight}) {
+    const auto& tips = V == 6890 ? kSmplTips : kSmplxTips;
+    const std::vector<Landmark> hand = HandLandmarks(body, side, tips[static_cast<size_t>(side)]);
+    landmarks.insert(landmarks.end(), hand.begin(), hand.end());
   }
   return landmarks;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Detector keypoints (COCO-17, toes and heels) on SMPL's and SMPL-X's topology, for body files without landmarks.
+/// Detector keypoints (COCO-17, toes, heels, hands) on SMPL's and SMPL-X's topology, for body files without landmarks.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,8 +13,8 @@ namespace bodyloom {
 /// Returns the landmarks. Nose, eyes, ears, toes and heels are single vertices; shoulders, elbows, wrists, hips, knees
 /// and ankles are the rows of the joint regressor (COCO's hips lie a little further out than SMPL's, which the
 /// tracker's fixed offsets compensate). Names as on the built-in body (CocoNames(), then left_big_toe, right_big_toe,
-/// left_small_toe, …). Empty for bodies with neither 6,890 nor 10,475 vertices, or without SMPL's first 22 joints.
-/// Source: vertex numbers from smplx vertex_ids.py.
+/// left_small_toe, …); bodies with fingers have those of HandLandmarkNames() as well. Empty for bodies with neither
+/// 6,890 nor 10,475 vertices, or without SMPL's first 22 joints. Source: vertex numbers from smplx vertex_ids.py.
 std::vector<Landmark> StandardLandmarks(const BodyModelData& body);
 
 // Rest pelvis of the published bodies, whose `trans` is the pelvis position minus this.

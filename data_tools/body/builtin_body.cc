@@ -11,8 +11,14 @@ const BodyModel& BuiltinBody() {
   return body;
 }
 
+const BodyModel& BuiltinBodyWithHands() {
+  static const BodyModel body(MakeBuiltinBodyWithHands(EmbeddedBuiltinBodySources()));
+  return body;
+}
+
 std::shared_ptr<const BodyModel> BodyOrBuiltin(const std::string& path) {
   if (path.empty()) return {std::shared_ptr<void>(), &BuiltinBody()};  // lives as long as the program
+  if (path == kBodyWithHands) return {std::shared_ptr<void>(), &BuiltinBodyWithHands()};
   return std::make_shared<const BodyModel>(LoadBody(path));
 }
 

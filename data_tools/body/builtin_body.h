@@ -16,8 +16,15 @@ namespace bodyloom {
 /// The body, built once from the copy inside the library; thread-safe.
 const BodyModel& BuiltinBody();
 
-/// The body in a file (data_tools/body/body_io.h), or the built-in one for an empty path. Throws std::runtime_error
-/// naming the file and what is wrong with it.
+/// The same body with SMPL-H's finger joints, 52 in all (geometry/body/hand_skeleton.h): same vertices, shapes and
+/// charts, 40 more landmarks (20 of each hand). With resting fingers it equals BuiltinBody() with resting hand joints.
+const BodyModel& BuiltinBodyWithHands();
+
+/// The name by which BodyOrBuiltin() gives BuiltinBodyWithHands(); a file of that name is "./hands".
+inline constexpr char kBodyWithHands[] = "hands";
+
+/// The body in a file (data_tools/body/body_io.h), the built-in one for an empty path, or that with hands for their
+/// name. Throws std::runtime_error naming the file and what is wrong with it.
 std::shared_ptr<const BodyModel> BodyOrBuiltin(const std::string& path);
 
 }  // namespace bodyloom

@@ -14,7 +14,6 @@ namespace {
 constexpr char kLeftHalfFormat[] = "bodyloom built-in body 1";
 constexpr double kWeightUnit = 1.0 / 65535;  // of `weight`: a row sums to 65535
 constexpr double kChartUnit = 1.0 / 65534;   // of `chart_uv`: even, so that the middle of a chart is exact
-constexpr double kCorrectiveUnit_m = 5e-5;   // of `corrective_block`
 constexpr double kSumTolerance = 1e-3;
 constexpr double kMaxShape_m = 10;
 constexpr int64_t kMaxComponents = 1000;
@@ -208,6 +207,21 @@ LeftHalfArrays ReadLeftHalfArrays(const std::string& npz_bytes, const std::strin
   ReadCorrectives(reader, sizes, &arrays);
   ReadCharts(reader, sizes, &arrays);
   return arrays;
+}
+
+CorrectiveBlock MirrorCorrective(const CorrectiveBlock& block, int mirrored_joint) {
+  CorrectiveBlock mirrored;
+  mirrored.joint = mirrored_joint;
+  for (int c = 0; c < 3; ++c) {
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        const bool negative = (c == 0) ^ (a == 0) ^ (b == 0);
+        const int i = 9 * c + 3 * a + b;
+        mirrored.values[i] = negative ? -block.values[i] : block.values[i];
+      }
+    }
+  }
+  return mirrored;
 }
 
 }  // namespace bodyloom

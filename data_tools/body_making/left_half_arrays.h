@@ -18,11 +18,17 @@ struct WeightedIndex {
 };
 using WeightedIndices = std::vector<WeightedIndex>;
 
+inline constexpr double kCorrectiveUnit_m = 5e-5;  ///< correctives are multiples of it
+
 /// A pose corrective of one vertex: metres for each of the nine entries of R_joint − I (3×9, row-major).
 struct CorrectiveBlock {
   int joint = 0;
   std::array<float, 27> values{};
 };
+
+/// The corrective that gives the mirrored vertex the mirrored offset when the pose is mirrored: with S = diag(−1,1,1)
+/// the mirrored rotation is S R S, so entry (c; a,b) takes the sign s_c s_a s_b.
+CorrectiveBlock MirrorCorrective(const CorrectiveBlock& block, int mirrored_joint);
 
 struct LeftHalfArrays {
   Eigen::MatrixXd cage_shape;                             ///< L_cage × 3B: x y z of component 0, of component 1, …

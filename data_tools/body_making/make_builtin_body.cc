@@ -6,7 +6,9 @@
 
 #include "data_tools/body_making/body_charts.h"
 #include "data_tools/body_making/cage.h"
+#include "data_tools/body_making/finger_joints.h"
 #include "data_tools/body_making/left_half_arrays.h"
+#include "data_tools/body_making/refined_cage.h"
 #include "data_tools/body_making/subdivision.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/printable.h"
@@ -20,9 +22,6 @@ extern const char bodyloom_builtin_body_parts_begin[], bodyloom_builtin_body_par
 
 namespace bodyloom {
 namespace {
-
-constexpr int kLevels = 2;
-constexpr int kQuadsPerCageQuad = 16;
 
 /// The mirror image of each joint: l_ and r_ of a name exchanged.
 std::vector<int> MirrorOfJoints(const std::vector<std::string>& names) {
@@ -41,39 +40,6 @@ std::vector<int> MirrorOfJoints(const std::vector<std::string>& names) {
 
 std::string MirrorOfLandmark(const std::string& name) {
   return name.starts_with("left_") ? "right_" + name.substr(5) : name;
-}
-
-/// The cage's two levels below: connectivity, symmetry, and S2 S1.
-struct RefinedCage {
-  std::vector<Quad> quads;
-  std::vector<int> mirror;
-  SparseRows fine_from_cage;
-  std::vector<int> left_vertices;  ///< of quads of the left half, increasing
-  int num_left_quads = 0;
-};
-
-RefinedCage Refine(const Cage& cage) {
-  RefinedCage refined;
-  refined.quads = cage.quads;
-  refined.mirror = cage.mirror;
-  refined.fine_from_cage.resize(static_cast<Eigen::Index>(cage.mirror.size()),
-                                static_cast<Eigen::Index>(cage.mirror.size()));
-  refined.fine_from_cage.setIdentity();
-  for (int level = 0; level < kLevels; ++level) {
-    const SubdivisionLevel finer = SubdivideCatmullClark(static_cast<int>(refined.mirror.size()), refined.quads);
-    refined.mirror = MirrorOfSubdivision(refined.mirror, refined.quads, finer);
-    refined.quads = finer.quads;
-    refined.fine_from_cage = SparseRows(finer.fine_from_coarse * refined.fine_from_cage);
-  }
-  refined.num_left_quads = kQuadsPerCageQuad * cage.num_left_quads;
-  std::vector<bool> is_left(refined.mirror.size(), false);
-  for (int q = 0; q < refined.num_left_quads; ++q) {
-    for (int v : refined.quads[q]) is_left[v] = true;
-  }
-  for (size_t v = 0; v < is_left.size(); ++v) {
-    if (is_left[v]) refined.left_vertices.push_back(static_cast<int>(v));
-  }
-  return refined;
 }
 
 void FillShape(const Cage& cage, const RefinedCage& refined, const Eigen::MatrixXd& left_cage_shape,
@@ -119,23 +85,6 @@ void FillRegressor(const RefinedCage& refined, const std::vector<int>& joint_mir
   body->J_regressor.setFromTriplets(entries.begin(), entries.end());
 }
 
-/// The corrective that gives the mirrored vertex the mirrored offset when the pose is mirrored: with S = diag(−1,1,1)
-/// the mirrored rotation is S R S, so entry (c; a,b) takes the sign s_c s_a s_b.
-CorrectiveBlock MirrorCorrective(const CorrectiveBlock& block, const std::vector<int>& joint_mirror) {
-  CorrectiveBlock mirrored;
-  mirrored.joint = joint_mirror[block.joint];
-  for (int c = 0; c < 3; ++c) {
-    for (int a = 0; a < 3; ++a) {
-      for (int b = 0; b < 3; ++b) {
-        const bool negative = (c == 0) ^ (a == 0) ^ (b == 0);
-        const int i = 9 * c + 3 * a + b;
-        mirrored.values[i] = negative ? -block.values[i] : block.values[i];
-      }
-    }
-  }
-  return mirrored;
-}
-
 void FillCorrectives(const RefinedCage& refined, const std::vector<int>& joint_mirror,
                      const std::vector<std::vector<CorrectiveBlock>>& left_blocks, BodyModelData* body) {
   std::vector<std::vector<CorrectiveBlock>> blocks(refined.mirror.size());
@@ -144,7 +93,9 @@ void FillCorrectives(const RefinedCage& refined, const std::vector<int>& joint_m
     blocks[v] = left_blocks[i];
     if (refined.mirror[v] == v) continue;
     std::vector<CorrectiveBlock>& mirrored = blocks[refined.mirror[v]];
-    for (const CorrectiveBlock& block : left_blocks[i]) mirrored.push_back(MirrorCorrective(block, joint_mirror));
+    for (const CorrectiveBlock& block : left_blocks[i]) {
+      mirrored.push_back(MirrorCorrective(block, joint_mirror[block.joint]));
+    }
     std::sort(mirrored.begin(), mirrored.end(), [](const auto& a, const auto& b) { return a.joint < b.joint; });
   }
   body->posedirs.begin.push_back(0);
@@ -213,7 +164,7 @@ BodyModelData MakeBuiltinBody(const BuiltinBodySources& sources, MakeBuiltinBody
   const Cage cage = ParseCage(sources.cage_text, sources.cage_name);
   RefinedCage refined;
   try {
-    refined = Refine(cage);
+    refined = RefineCage(cage);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(sources.cage_name + ": cannot be subdivided: " + error.what());
   }
@@ -248,6 +199,18 @@ BodyModelData MakeBuiltinBody(const BuiltinBodySources& sources, MakeBuiltinBody
     summary->cage_quads = static_cast<int>(cage.quads.size());
     summary->vertices = static_cast<int>(body.v_template.rows());
     summary->quads = static_cast<int>(refined.quads.size());
+  }
+  return body;
+}
+
+BodyModelData MakeBuiltinBodyWithHands(const BuiltinBodySources& sources) {
+  BodyModelData body = MakeBuiltinBody(sources);
+  body.name = "bodyloom_hands";
+  const Cage cage = ParseCage(sources.cage_text, sources.cage_name);
+  try {
+    AddFingerJoints(cage, RefineCage(cage), &body);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(sources.cage_name + ": " + error.what());
   }
   return body;
 }

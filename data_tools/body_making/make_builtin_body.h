@@ -33,4 +33,7 @@ struct MakeBuiltinBodySummary {
 /// Throws std::runtime_error naming file and array (or line) when a source is damaged or the two do not fit together.
 BodyModelData MakeBuiltinBody(const BuiltinBodySources& sources, MakeBuiltinBodySummary* summary = nullptr);
 
+/// The same body on SMPL-H's 52 joints (finger_joints.h), named "bodyloom_hands". Throws as MakeBuiltinBody().
+BodyModelData MakeBuiltinBodyWithHands(const BuiltinBodySources& sources);
+
 }  // namespace bodyloom

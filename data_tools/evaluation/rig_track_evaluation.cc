@@ -18,6 +18,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/percentile.h"
 #include "geometry/base/units.h"
+#include "geometry/body/hand_skeleton.h"
 #include "geometry/body/posed_body.h"
 #include "geometry/body/skinning.h"
 #include "geometry/math/rotation.h"
@@ -322,7 +323,9 @@ Track TrackAtTimes(const BodyModel& body, const Track& track, const std::vector<
   sampled.motion.up = track.motion.up;
   sampled.motion.betas = track.motion.betas;
   sampled.motion.timestamps = times_s;
-  sampled.motion.poses = RowMatrixXd::Constant(Eigen::Index(times_s.size()), track.motion.poses.cols(), kNaN);
+  // SMPL's 24 joints are written as those of a body with fingers, which have no joints for the whole hand.
+  const Eigen::Index columns = HasFingers(body) ? Eigen::Index{3} * body.num_joints() : track.motion.poses.cols();
+  sampled.motion.poses = RowMatrixXd::Constant(Eigen::Index(times_s.size()), columns, kNaN);
   sampled.motion.trans = MatrixX3d::Constant(Eigen::Index(times_s.size()), 3, kNaN);
   sampled.frame_status.assign(times_s.size(), FrameStatus::kLost);
   const auto observed = [&](int t) {
@@ -344,7 +347,11 @@ Track TrackAtTimes(const BodyModel& body, const Track& track, const std::vector<
     const auto row = static_cast<Eigen::Index>(i);
     sampled.frame_status[i] = FrameStatus::kTracked;
     if (at->before == at->after) {
-      sampled.motion.poses.row(row) = track.motion.poses.row(at->before);
+      if (columns == track.motion.poses.cols()) {
+        sampled.motion.poses.row(row) = track.motion.poses.row(at->before);
+      } else {
+        sampled.motion.poses.row(row) = AxisAngleFromPose(body, pose_at(at->before)).transpose();
+      }
       sampled.motion.trans.row(row) = track.motion.trans.row(at->before);
       continue;
     }
@@ -357,7 +364,7 @@ Track TrackAtTimes(const BodyModel& body, const Track& track, const std::vector<
     for (size_t j = 0; j < pose.rotations.size(); ++j) {
       pose.rotations[j] = InterpolateRotation(pose.rotations[j], next.rotations[j], at->s);
     }
-    sampled.motion.poses.row(row) = AxisAngleFromPose(body, pose).head(track.motion.poses.cols()).transpose();
+    sampled.motion.poses.row(row) = AxisAngleFromPose(body, pose).head(columns).transpose();
     sampled.motion.trans.row(row) = ((1 - at->s) * pose.trans + at->s * next.trans).transpose();
   }
   return sampled;

@@ -159,13 +159,14 @@ Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where, std::vect
 void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
                 const std::string& gender) {
   CheckMotion(motion, "WriteAmass");
-  BODYLOOM_CHECK(motion.poses.cols() == kSmplColumns || motion.poses.cols() == kSmplhColumns,
-                 "WriteAmass: ", motion.poses.cols() / 3, " joints, expected 24 (SMPL) or 52 (SMPL-H)");
+  const Eigen::Index columns = motion.poses.cols();
+  BODYLOOM_CHECK(columns == kSmplColumns || columns == kSmplhColumns || columns == kSmplxColumns,
+                 "WriteAmass: ", columns / 3, " joints, expected 24 (SMPL), 52 (SMPL-H) or 55 (SMPL-X)");
   const Motion z_up = ChangeUp(motion, Motion::Up::kZ, rest_pelvis);
   const int64_t T = motion.num_frames();
   RowMatrixXd poses = RowMatrixXd::Zero(T, kSmplhColumns);
-  const Eigen::Index kept = motion.poses.cols() == kSmplColumns ? kBodyColumns : kSmplhColumns;
-  poses.leftCols(kept) = z_up.poses.leftCols(kept);
+  poses.leftCols(kBodyColumns) = z_up.poses.leftCols(kBodyColumns);
+  if (columns != kSmplColumns) poses.rightCols(kHandColumns) = z_up.poses.rightCols(kHandColumns);
   NpzArrays arrays;
   arrays["poses"] = NdArray::FromDoubles(poses.data(), {T, kSmplhColumns});
   const bool own = motion.body == "smpl" || motion.body == "smplh";

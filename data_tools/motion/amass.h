@@ -24,11 +24,11 @@ bool IsAmass(const NpzArrays& arrays);
 /// was expected.
 Motion AmassFromNpz(const NpzArrays& arrays, const std::string& where, std::vector<std::string>* warnings = nullptr);
 
-/// Writes the SMPL-H form (156 columns, z up) of a 24- or 52-joint motion; `rest_pelvis` is the body's pelvis joint at
-/// rest, about which the root turns. `timestamps` are written too. `betas` are the motion's if its body is SMPL or
-/// SMPL-H, which share them; otherwise 16 zeros, with `trans` set for the same pelvis on the mean neutral shape, and
-/// the body's own name and shape are in `source_body` and `source_betas`. Throws std::invalid_argument for an invalid
-/// motion.
+/// Writes the SMPL-H form (156 columns, z up) of a motion of 24, 52 or 55 joints, SMPL-X's jaw and eyes left out; hands
+/// count from the template's. `rest_pelvis` is the body's pelvis joint at rest, about which it turns. `timestamps`
+/// are written too. `betas` are the motion's if its body is SMPL or SMPL-H, which share them; otherwise 16 zeros, with
+/// `trans` set for the same pelvis on the mean neutral shape, and the body's own name and shape are in `source_body`
+/// and `source_betas`. Throws std::invalid_argument for an invalid motion.
 void WriteAmass(const std::string& path, const Motion& motion, const Eigen::Vector3d& rest_pelvis,
                 const std::string& gender = "neutral");
 

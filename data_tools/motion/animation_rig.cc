@@ -3,9 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "geometry/base/check.h"
+#include "geometry/body/hand_skeleton.h"
 
 namespace bodyloom {
 namespace {
@@ -28,6 +30,20 @@ const std::vector<std::string>& BodyJointNamesOf(AnimationRig rig) {
       "neck",         "leftShoulder",  "rightShoulder", "head",       "leftUpperArm", "rightUpperArm",
       "leftLowerArm", "rightLowerArm", "leftHand",      "rightHand"};
   return rig == AnimationRig::kMixamo ? mixamo : rig == AnimationRig::kUnreal ? unreal : vrm;
+}
+
+/// The rig's name of finger joint i of a hand (geometry/body/hand_skeleton.h).
+std::string FingerNameOf(AnimationRig rig, HandSide side, int i) {
+  const bool left = side == HandSide::kLeft;
+  const size_t joint = size_t(i) % 3;
+  std::string finger = FingerNames()[size_t(i) / 3];
+  if (rig == AnimationRig::kUnreal) return finger + "_0" + std::to_string(joint + 1) + (left ? "_l" : "_r");
+  if (rig == AnimationRig::kVrm && finger == "pinky") finger = "little";
+  finger[0] = static_cast<char>(finger[0] - 'a' + 'A');
+  if (rig == AnimationRig::kMixamo) return (left ? "LeftHand" : "RightHand") + finger + std::to_string(joint + 1);
+  static constexpr std::array<const char*, 3> kFinger = {"Proximal", "Intermediate", "Distal"},
+                                              kThumb = {"Metacarpal", "Proximal", "Distal"};
+  return (left ? "left" : "right") + finger + (finger == "Thumb" ? kThumb[joint] : kFinger[joint]);
 }
 
 }  // namespace
@@ -55,6 +71,15 @@ RigSkeleton RigSkeletonOf(AnimationRig rig, const BodyModel& model) {
   BODYLOOM_CHECK(smpl, "rig: the body '", model.name(),
                  "' does not begin with SMPL's 22 body joints, which the rig needs");
   skeleton.names = BodyJointNamesOf(rig);
+  if (HasFingers(model)) {
+    skeleton.names.insert(skeleton.names.end(), model.data().joint_names.begin() + kRigJoints,
+                          model.data().joint_names.end());
+    for (const HandSide side : {HandSide::kLeft, HandSide::kRight}) {
+      for (int i = 0; i < kHandJoints; ++i) {
+        skeleton.names[size_t(model.FindJoint(HandJointNames(side)[size_t(i)]))] = FingerNameOf(rig, side, i);
+      }
+    }
+  }
   if (rig != AnimationRig::kUnreal) return skeleton;
   // The left arm points along +x: down is a turn about −z.
   const Eigen::Matrix3d left = Eigen::AngleAxisd(-kArmsDown_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();

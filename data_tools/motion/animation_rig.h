@@ -16,7 +16,7 @@ enum class AnimationRig {
   kSmpl,    ///< the body's own names, T-pose
   kMixamo,  ///< Hips, Spine, LeftUpLeg …: Mixamo's names without "mixamorig:", T-pose
   kUnreal,  ///< pelvis, spine_01, thigh_l …: names of Unreal's UE4 and UE5 mannequins, A-pose with arms 45° down
-  kVrm,     ///< hips, spine, leftUpperLeg …: humanoid bones of VRM, T-pose
+  kVrm,     ///< hips, spine, leftUpperLeg …: humanoid bones of VRM 1.0, T-pose
 };
 /// The names "smpl", "mixamo", "unreal", "vrm".
 const std::vector<std::string>& AnimationRigNames();
@@ -25,7 +25,8 @@ AnimationRig AnimationRigFromString(const std::string& name);
 
 /// A body's joints in the form of a rig.
 struct RigSkeleton {
-  /// Of the body's first joints: all of them (kSmpl), or SMPL's 22 body joints, which these rigs have names for.
+  /// Of the body's first joints: all of them (kSmpl, and bodies with fingers, whose joints these rigs have names for;
+  /// SMPL-X's jaw and eyes keep theirs), or SMPL's 22 body joints.
   std::vector<std::string> names;
   /// World rotation A of each joint of the body from its T-pose to the rig's rest pose. Joints beyond the names turn
   /// with their parents.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Writes a motion as BVH for animation programs: the body's joints (rest positions of the motion's shape) in
 /// centimetres, y up, rotation channels Z X Y (R = Rz·Rx·Ry), degrees. Ends of chains get a short End Site. Names and
-/// rest pose are those of a rig (animation_rig.h); joints that it has no name for, those of the hands, are left out.
+/// rest pose are those of a rig (animation_rig.h); joints that it has no name for, SMPL's two of the hands, are left
+/// out.
 #pragma once
 
 #include <string>

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "geometry/base/check.h"
+#include "geometry/body/hand_skeleton.h"
 #include "geometry/math/rotation.h"
 
 namespace bodyloom {
@@ -20,7 +21,18 @@ BodyPose PoseFromAxisAngle(const BodyModel& model, const Eigen::Ref<const Vector
                  " values, the body '", model.name(), "' takes 3J = ", 3 * J);
   BODYLOOM_CHECK(axis_angle.allFinite() && trans.allFinite(), "pose or translation holds NaN or infinite values");
   VectorXd full = model.data().pose_mean.size() > 0 ? model.data().pose_mean : VectorXd::Zero(3 * J);
-  full.head(axis_angle.size()) += axis_angle;
+  const auto smpl_values = static_cast<Eigen::Index>(3 * SmplJointNames().size());
+  if (axis_angle.size() == smpl_values && J > axis_angle.size() / 3 && HasFingers(model)) {
+    full.head(smpl_values - 6) += axis_angle.head(smpl_values - 6);
+    for (const HandSide side : {HandSide::kLeft, HandSide::kRight}) {
+      for (const int i : {0, 3, 6, 9}) {  // the knuckles of index, middle, little and ring finger
+        const int joint = model.FindJoint(HandJointNames(side)[i]);
+        full.segment<3>(3 * joint) += axis_angle.segment<3>(smpl_values - (side == HandSide::kLeft ? 6 : 3));
+      }
+    }
+  } else {
+    full.head(axis_angle.size()) += axis_angle;
+  }
   BodyPose pose;
   pose.trans = trans;
   pose.rotations.reserve(J);

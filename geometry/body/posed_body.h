@@ -19,9 +19,9 @@ struct BodyPose {
   Eigen::Vector3d trans = Eigen::Vector3d::Zero();
 };
 
-/// Converts 3J axis-angle values; fewer values leave the remaining joints at zero (72 values on a 24-joint body is all
-/// of them). The body's pose_mean is added to all of them. Throws std::invalid_argument when there are more than 3J or
-/// they are not finite.
+/// Converts 3J axis-angle values, to which the body's pose_mean is added; fewer leave the remaining joints at zero, but
+/// of 72 values, SMPL's 24 joints, on a body with finger joints the last six turn the knuckles of both hands' index to
+/// little finger. Throws std::invalid_argument when there are more than 3J or they are not finite.
 BodyPose PoseFromAxisAngle(const BodyModel& model, const Eigen::Ref<const Eigen::VectorXd>& axis_angle,
                            const Eigen::Vector3d& trans);
 

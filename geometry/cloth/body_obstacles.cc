@@ -73,7 +73,12 @@ BodyObstacles::BodyObstacles(const BodyModel& body, const MatrixX3d& vertices, c
   for (size_t i = 0; i < kept.size(); ++i) {
     for (int c = 0; c < 3; ++c) faces_(static_cast<Eigen::Index>(i), c) = place[faces(kept[i], c)];
   }
-  for (const BoneOfLimb& bone : kBones) {
+  for (BoneOfLimb bone : kBones) {
+    // The hand of a body with fingers ends at its middle knuckle.
+    if (const int knuckle = body.FindJoint(bone.from == 20 ? "l_middle1" : "r_middle1");
+        knuckle >= 0 && (bone.from == 20 || bone.from == 21)) {
+      bone.to = knuckle;
+    }
     const Capsule axis = {joints.row(bone.from).transpose(), joints.row(bone.to).transpose(), 0, 0};
     std::array<std::vector<double>, 2> distances;
     for (int v = 0; v < body.num_vertices(); ++v) {

@@ -221,7 +221,7 @@ CheckBodyReport CheckBody(const CheckBodyRequest& request, const PipelineCallbac
         "--track: crossing faces are found by bodyloom-cgal, which is not beside bodyloom "
         "(docs/your_own_body.md)");
   }
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   RequireReadable(request.track, "track");
   RequireDistinct({request.body, request.track}, {request.repair});
   RequireWritable(request.repair);

@@ -39,6 +39,7 @@ BuildBuiltinBodyReport BuildBuiltinBody(const BuildBuiltinBodyRequest& request, 
   BuildBuiltinBodyReport report;
   report.out = request.out;
   BodyModelData body = MakeBuiltinBody(sources, &report.summary);
+  if (request.hands) body = MakeBuiltinBodyWithHands(sources);
   SaveBodyCompact(request.out, body);
   report.description = DescribeBody(BodyModel(std::move(body)));
   return report;

@@ -31,6 +31,7 @@ ConvertBodyReport ConvertBody(const ConvertBodyRequest& request, const PipelineC
 
 struct BuildBuiltinBodyRequest {
   std::string cage, parts;  ///< another cage, with weights, shapes and charts on it; both or neither
+  bool hands = false;       ///< with SMPL-H's finger joints
   std::string out;          ///< the compact body, .npz
 };
 

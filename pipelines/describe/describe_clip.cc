@@ -45,7 +45,7 @@ DescribeClipReport DescribeClip(const DescribeClipRequest& request, const Pipeli
   report.out = request.out;
   RequireReadable(request.track, "track");
   report.options = OptionsOf(request);
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   RequireDistinct({request.track, request.body, request.cameras}, {request.out, header, request.preview, request.json});
   for (const std::string& path : {request.out, header, request.preview, request.json}) RequireWritable(path);
   const Track track = ReadTrack(request.track, MovingCamera::kTake);

@@ -25,6 +25,8 @@
 #include "data_tools/motion/track_io.h"
 #include "geometry/base/check.h"
 #include "geometry/base/stopwatch.h"
+#include "geometry/body/hand_skeleton.h"
+#include "geometry/math/rotation.h"
 #include "geometry/scene/track.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/export/export_angles.h"
@@ -35,6 +37,8 @@
 
 namespace bodyloom {
 namespace {
+
+constexpr int kBodyJointsOfSmpl = 22;
 
 std::string ObjText(const MatrixX3d& vertices, const BodyModelData& body) {
   std::string text;
@@ -217,6 +221,25 @@ Motion MotionOfEveryFrame(const ExportInputs& inputs, const ExportTrackRequest& 
   return filled;
 }
 
+/// The same for AMASS, whose hands count from the flat ones of the template: the body's mean hand is added, and poses
+/// of 24 joints become those of its fingers.
+Motion MotionWithHands(const ExportInputs& inputs, const ExportTrackRequest& request, ExportTrackReport* report) {
+  Motion motion = MotionOfEveryFrame(inputs, request, report);
+  const BodyModel& body = *inputs.body;
+  if (!HasFingers(body)) return motion;
+  RowMatrixXd poses = RowMatrixXd::Zero(motion.num_frames(), 3 * body.num_joints());
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    const BodyPose pose = PoseFromAxisAngle(body, motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
+    for (size_t j = 0; j < pose.rotations.size(); ++j) {
+      poses.row(t).segment<3>(3 * Eigen::Index(j)) = AxisAngleFromRotation(pose.rotations[j]).transpose();
+    }
+  }
+  const Eigen::Index same = std::min<Eigen::Index>(motion.poses.cols(), Eigen::Index{3} * kBodyJointsOfSmpl);
+  poses.leftCols(same) = motion.poses.leftCols(same);
+  motion.poses = std::move(poses);
+  return motion;
+}
+
 SkinSummary ExportSkins(const ExportInputs& inputs, const ExportTrackRequest& request) {
   std::vector<std::string> textures;
   for (const std::string& path : request.textures) {
@@ -244,7 +267,7 @@ void Write(const ExportInputs& inputs, const ExportTrackRequest& request, const 
     case TrackForm::kObj:
       return ExportObj(inputs, request, callbacks);
     case TrackForm::kAmass:
-      return WriteAmass(request.out, MotionOfEveryFrame(inputs, request, report), pelvis);
+      return WriteAmass(request.out, MotionWithHands(inputs, request, report), pelvis);
     case TrackForm::kBvh:
       return WriteBvh(request.out, MotionOfEveryFrame(inputs, request, report), *inputs.body, request.rig);
     case TrackForm::kGlb:
@@ -252,7 +275,7 @@ void Write(const ExportInputs& inputs, const ExportTrackRequest& request, const 
       report->skin = ExportSkins(inputs, request);
       return;
     case TrackForm::kSmplx:
-      return WriteAmassSmplx(request.out, MotionOfEveryFrame(inputs, request, report), pelvis);
+      return WriteAmassSmplx(request.out, MotionWithHands(inputs, request, report), pelvis);
     case TrackForm::kTrc:
     case TrackForm::kC3d: {
       const ExportScene scene = inputs.Scene();
@@ -343,7 +366,7 @@ std::string ToText(const ExportTrackReport& report) {
 ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineCallbacks& callbacks) {
   CheckExportOptions(request);
   for (const std::string& track : request.tracks) RequireReadable(track, "track");
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   RequireDistinct(request.tracks, {request.out, request.events});
   RequireDistinct({request.body}, {request.out, request.events});
   CheckOtherFilesOf(request);

@@ -231,7 +231,7 @@ std::pair<int, int> FrameRange(const std::string& text, int num_frames, const st
 RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineCallbacks& callbacks) {
   CheckOptions(request);
   RequireReadable(request.track, "track");
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   RequireReadable(request.truth, "truth");
   RequireDistinct({request.track, request.body, request.truth}, {request.out, request.json});
   CheckOtherFiles(request);

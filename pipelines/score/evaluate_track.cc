@@ -326,7 +326,7 @@ Evaluation EvaluateChecked(const EvaluateTrackRequest& request, const BodyModel&
 
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCallbacks& callbacks) {
   RequireReadable(request.track, "track");
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   CheckEvaluation(request, {});
   RequireDistinct({request.track, request.body}, {request.json});
   return EvaluateChecked(request, *BodyOrBuiltin(request.body), ReadTrack(request.track, MovingCamera::kTake), {},

@@ -81,7 +81,7 @@ SynthesizeClipReport SynthesizeClip(const SynthesizeClipRequest& request, const 
   if (request.motion.name != "demo") {
     RequireReadable(request.motion.name, "motion");
   }
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   RequireWritableFolder(request.out);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   const Motion motion = LoadMotionSource(request.motion, *body, callbacks);

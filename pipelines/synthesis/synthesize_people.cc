@@ -77,7 +77,7 @@ std::vector<Motion> LoadMotions(const SynthesizePeopleRequest& request, const Bo
 }  // namespace
 
 SynthesizePeopleReport SynthesizePeople(const SynthesizePeopleRequest& request, const PipelineCallbacks& callbacks) {
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   RequireWritableFolder(request.out);
   RequireWritable(request.sheet);
   const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);

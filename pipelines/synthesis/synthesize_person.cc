@@ -81,7 +81,7 @@ SynthesizePersonReport SynthesizePerson(const SynthesizePersonRequest& request, 
   if (!(request.motion.fps > 0) && request.speeds != std::vector<double>{1}) {
     throw RequestError("--speed needs --fps: the rate of the images");
   }
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   RequireWritableFolder(request.out);
   RequireWritable(request.sheet);
   RequireWritable(request.light);

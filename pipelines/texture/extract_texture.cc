@@ -63,7 +63,7 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
   StageClock clock;
   RequireReadable(request.track, "track");
   RequireReadable(request.video, "video");
-  RequireReadable(request.body, "body model");
+  RequireReadableBody(request.body);
   RequireDistinct({request.track, request.video, request.body}, {request.out, request.confidence, request.json});
   for (const std::string& path : {request.out, request.confidence, request.json}) RequireWritable(path);
   const Track track_of_file = ReadTrack(request.track, MovingCamera::kTake);

@@ -98,7 +98,6 @@ std::vector<std::string> RequireFiles(const SceneRequest& request, const FrameDe
       {request.cameras, "cameras"},
       {request.camera_path, "camera path"},
       {request.video, "video"},
-      {request.body, "body model"},
       {request.prior == "none" ? "" : request.prior, "pose prior"},
       {request.lifter == "none" ? "" : request.lifter, "lifter"}};
   RequirePoseModels(detector);
@@ -107,6 +106,8 @@ std::vector<std::string> RequireFiles(const SceneRequest& request, const FrameDe
     RequireReadable(path, what);
     inputs.push_back(path);
   }
+  RequireReadableBody(request.body);
+  inputs.push_back(request.body);
   return inputs;
 }
 

@@ -23,6 +23,16 @@ class Bodies(unittest.TestCase):
             exported = np.load(folder / "v.npy")
         np.testing.assert_allclose(vertices, exported, rtol=0, atol=1e-6)
 
+    def test_hands(self):
+        hands = bodyloom.Body.builtin(hands=True)
+        self.assertEqual((hands.num_joints, hands.num_vertices, hands.name), (52, 7874, "bodyloom_hands"))
+        self.assertEqual(hands.joint_names[22], "l_index1")
+        self.assertIn("right_thumb_tip", hands.landmark_names)
+        track = tracked()
+        same = hands.vertices(track.poses[:, :66], track.betas, track.trans)
+        without = bodyloom.Body.builtin().vertices(track.poses[:, :66], track.betas, track.trans)
+        np.testing.assert_allclose(same, without, rtol=0, atol=1e-6)
+
     def test_joints_are_the_track_s(self):
         track = tracked()
         joints = bodyloom.Body.builtin().joints(track.poses, track.betas, track.trans)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/body/hand_skeleton.h"
 #include "tracking/problem/body_points.h"
 #include "tracking/problem/user_cost.h"
 
@@ -19,7 +20,13 @@ std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmark
                                   bool ground, std::span<const UserTerm> user_terms) {
   std::vector<int> all(model.num_joints());
   std::iota(all.begin(), all.end(), 0);
-  if (dense || !skip) return all;
+  if (!skip) return all;
+  std::vector<bool> finger(model.num_joints(), false);
+  for (const HandSide side : {HandSide::kLeft, HandSide::kRight}) {
+    for (const std::string& name : HandJointNames(side)) {
+      if (const int j = model.FindJoint(name); j >= 0) finger[j] = true;
+    }
+  }
   Kinematics kinematics;
   PointEvaluator points;
   kinematics.Set(model, Eigen::VectorXd(),
@@ -46,7 +53,7 @@ std::vector<int> FindActiveJoints(const BodyModel& model, const ObservedLandmark
   }
   std::vector<int> active;
   for (int j : all) {
-    if (j == 0 || lever[j] >= kMinLever) active.push_back(j);
+    if (j == 0 || (dense && !finger[j]) || lever[j] >= kMinLever) active.push_back(j);
   }
   return active;
 }

@@ -52,9 +52,11 @@ ClothesStyle ClothesStyleFromString(const std::string& name) {
 
 Outfit::Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed, ClothesStyle style)
     : kind_(kind), style_(style) {
+  constexpr int kWithoutHands = 22;
   const std::vector<int>& smpl = SmplParents();
-  BODYLOOM_CHECK(body.num_joints() >= 24 && std::equal(smpl.begin(), smpl.end(), body.parents().begin()),
-                 "outfit: ", body.name(), " with ", body.num_joints(), " joints, expected a body on SMPL's 24");
+  BODYLOOM_CHECK(body.num_joints() >= kWithoutHands &&
+                     std::equal(smpl.begin(), smpl.begin() + kWithoutHands, body.parents().begin()),
+                 "outfit: ", body.name(), " with ", body.num_joints(), " joints, expected a body on SMPL's first 22");
   const MatrixX3d& joints = body.joint_template();
   const MatrixX3d& vertices = body.data().v_template;
   const double top_y = vertices.col(1).maxCoeff(), bottom_y = vertices.col(1).minCoeff();

@@ -3,7 +3,7 @@
 /// labelled by position.
 ///
 /// Points of the surface are given by their position on the template (T-pose, metres, body frame), so cuts (sleeve,
-/// neckline, hairline, …) are smooth curves on any mesh and move with the skin. Any body with SMPL's first 24 joints
+/// neckline, hairline, …) are smooth curves on any mesh and move with the skin. Any body with SMPL's first 22 joints
 /// and a T-pose template is supported; its joints and height determine the measures.
 #pragma once
 
@@ -52,7 +52,7 @@ struct OutfitCut {
 
 class Outfit {
  public:
-  /// Throws std::invalid_argument when the body does not begin with SMPL's 24 joints.
+  /// Throws std::invalid_argument when the body does not begin with SMPL's 22 joints without hands.
   Outfit(const BodyModel& body, GarmentKind kind, uint64_t seed, ClothesStyle style = ClothesStyle::kPatterned);
 
   [[nodiscard]] GarmentKind kind() const { return kind_; }

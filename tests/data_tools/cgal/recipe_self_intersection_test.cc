@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Property promised by assets/body/RECIPE.md, section 9: no self-intersection of the template and at ±2 sd of the
+/// Property promised by assets/body/RECIPE.md, section 10: no self-intersection of the template and at ±2 sd of the
 /// first three shape components, by CGAL's exact predicates.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>

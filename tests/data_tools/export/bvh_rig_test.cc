@@ -98,5 +98,28 @@ TEST(BvhRig, JointsAreWhereTheyAreUnderEveryRigsNames) {
   }
   EXPECT_THROW(AnimationRigFromString("rigify"), std::invalid_argument);
 }
+
+TEST(BvhRig, FingersAreWhereTheyAreUnderEveryRigsNames) {
+  const BodyModel& body = BuiltinBodyWithHands();
+  const Track track = TrackWithHands();
+  const ExportScene scene = SceneOf(track, body);
+  const ExportPerson& person = scene.people[0];
+  const Motion motion = MotionInWorld(TiltedWorld(), person.rest_joints.row(0).transpose(), track.motion);
+  const MatrixX3d truth = PoseSkeleton(body, person.rest_joints, person.poses[7]).joints;
+  const std::map<AnimationRig, std::vector<std::string>> index_pinky = {
+      {AnimationRig::kSmpl, {"l_index3", "r_pinky3", "r_thumb3"}},
+      {AnimationRig::kMixamo, {"LeftHandIndex3", "RightHandPinky3", "RightHandThumb3"}},
+      {AnimationRig::kUnreal, {"index_03_l", "pinky_03_r", "thumb_03_r"}},
+      {AnimationRig::kVrm, {"leftIndexDistal", "rightLittleDistal", "rightThumbDistal"}}};
+  for (const auto& [rig, names] : index_pinky) {
+    const std::map<std::string, Vector3d> at = BvhPositions(BvhText(motion, body, rig), 7);
+    EXPECT_EQ(at.size(), 52U);
+    const std::vector<std::string> joints = {"l_index3", "r_pinky3", "r_thumb3"};
+    for (size_t i = 0; i < joints.size(); ++i) {
+      EXPECT_LT((at.at(names[i]) - truth.row(body.FindJoint(joints[i])).transpose()).norm(), 1e-6) << names[i];
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bodyloom::bvh_rig_test

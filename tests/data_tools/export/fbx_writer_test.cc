@@ -54,6 +54,22 @@ TEST(FbxWriter, PosesTheBodyWhereItIsForEveryRig) {
   }
 }
 
+TEST(FbxWriter, PosesTheFingersForEveryRig) {
+  const BodyModel& body = BuiltinBodyWithHands();
+  const Track track = TrackWithHands();
+  const ExportScene scene = SceneOf(track, body);
+  for (const AnimationRig rig :
+       {AnimationRig::kSmpl, AnimationRig::kMixamo, AnimationRig::kUnreal, AnimationRig::kVrm}) {
+    SkinSummary summary;
+    const FbxTwin file(FbxText(scene, {.rig = rig, .correctives = 12}, &summary));
+    for (const int t : {0, 7}) {
+      const Eigen::MatrixXd posed = kCentimetre_m * file.Pose(file.Find("person_0_body", "Geometry"), t);
+      EXPECT_LT((posed - VerticesInWorld(track, t, body)).rowwise().norm().maxCoeff(), summary.max_error_m + 5e-6);
+      EXPECT_LT(FarthestJoint(file, scene.people[0], rig, t), 1e-5);
+    }
+  }
+}
+
 TEST(FbxWriter, EnoughShapesAreExactAlsoInTheAPose) {
   const ExportScene scene = SceneOf(TrackWithAGap());
   for (const AnimationRig rig : {AnimationRig::kSmpl, AnimationRig::kUnreal}) {
@@ -124,6 +140,23 @@ TEST(FbxWriter, NamesAreTheRigs) {
   EXPECT_EQ(mixamo[22], body.data().joint_names[22]) << "the rig has no name for it";
   EXPECT_EQ(FbxJointNames(AnimationRig::kUnreal, body)[18], "lowerarm_l");
   EXPECT_EQ(FbxJointNames(AnimationRig::kVrm, body)[9], "upperChest");
+}
+
+TEST(FbxWriter, FingersHaveTheRigsNames) {
+  const BodyModel& body = BuiltinBodyWithHands();
+  const auto name = [&](AnimationRig rig, const char* joint) {
+    return FbxJointNames(rig, body)[size_t(body.FindJoint(joint))];
+  };
+  EXPECT_EQ(name(AnimationRig::kSmpl, "l_index1"), "l_index1");
+  EXPECT_EQ(name(AnimationRig::kMixamo, "l_index1"), "mixamorig:LeftHandIndex1");
+  EXPECT_EQ(name(AnimationRig::kMixamo, "r_thumb3"), "mixamorig:RightHandThumb3");
+  EXPECT_EQ(name(AnimationRig::kUnreal, "l_pinky2"), "pinky_02_l");
+  EXPECT_EQ(name(AnimationRig::kUnreal, "r_thumb1"), "thumb_01_r");
+  EXPECT_EQ(name(AnimationRig::kVrm, "l_index1"), "leftIndexProximal");
+  EXPECT_EQ(name(AnimationRig::kVrm, "r_pinky2"), "rightLittleIntermediate");
+  EXPECT_EQ(name(AnimationRig::kVrm, "l_ring3"), "leftRingDistal");
+  EXPECT_EQ(name(AnimationRig::kVrm, "r_thumb1"), "rightThumbMetacarpal");
+  EXPECT_EQ(name(AnimationRig::kVrm, "r_thumb2"), "rightThumbProximal");
 }
 
 TEST(FbxWriter, KeysAreTheTracksAndTheLostAreGone) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "data_tools/export/skinned_mesh.h"
+#include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
 #include "tests/data_tools/export/exported_scene.h"
 #include "tests/data_tools/export/gltf_twin.h"
@@ -42,6 +43,28 @@ TEST(GlbWriter, PosesTheBodyWhereItIs) {
   EXPECT_LE(with.shapes, 8);
   EXPECT_EQ(without.shapes, 0);
   EXPECT_FALSE(plain.json["meshes"][0]["primitives"][0].contains("targets"));
+}
+
+TEST(GlbWriter, PosesTheFingers) {
+  const BodyModel& body = BuiltinBodyWithHands();
+  const Track track = TrackWithHands();
+  const ExportScene scene = SceneOf(track, body);
+  SkinSummary summary;
+  const GltfTwin file(GlbText(scene, {.correctives = 12}, &summary));
+  EXPECT_EQ(summary.reduced_vertices, 0) << "no vertex has more than four joints";
+  EXPECT_LT(summary.max_error_m, 2e-5);
+  EXPECT_EQ(file.json["skins"][0]["joints"].size(), 52U);
+  const Eigen::MatrixXd posed = file.Pose(file.Node("person_0_body"), 7);
+  const MatrixX3d truth = VerticesInWorld(track, 7, body);
+  const SkinnedMesh mesh = MakeSkinnedMesh(scene.people[0], 0);
+  for (Eigen::Index v = 0; v < posed.rows(); ++v) {
+    ASSERT_LT((posed.row(v) - truth.row(mesh.body_vertex[size_t(v)])).norm(), 3e-5) << v;
+  }
+  const Eigen::MatrixXd q = file.Keys(file.Node("r_middle2"), "rotation", true);
+  ASSERT_EQ(q.rows(), 12);
+  const Eigen::Quaterniond expected(
+      RotationFromAxisAngle(track.motion.poses.row(5).segment<3>(3 * body.FindJoint("r_middle2")).transpose()));
+  EXPECT_NEAR(std::abs(q.row(5).dot(expected.coeffs().transpose())), 1, 1e-6);
 }
 
 TEST(GlbWriter, EnoughShapesAreExact) {

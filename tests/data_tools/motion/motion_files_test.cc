@@ -218,6 +218,30 @@ TEST(Amass, ShapeOfAnotherBodyIsNotWrittenAsSmpls) {
   EXPECT_TRUE(LoadMotion(path).betas.isApprox(motion.betas));
 }
 
+TEST(Amass, FingersAreInTheirColumns) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("m.npz");
+  Motion motion = RandomMotion(3, Motion::Up::kZ);
+  const RowMatrixXd hands = 0.4 * RowMatrixXd::Random(3, 90), body = motion.poses.leftCols(66);
+  for (const int middle : {0, 9}) {  // SMPL-H, or SMPL-X with jaw and eyes
+    motion.poses.resize(3, 66 + middle + 90);
+    motion.poses << body, RowMatrixXd::Constant(3, middle, 0.1), hands;
+    motion.body = middle == 0 ? "bodyloom_hands" : "smplx";
+    WriteAmass(path, motion, Eigen::Vector3d::Zero());
+    const RowMatrixXd poses = ReadNpz(path).at("poses").ToMatrix();
+    ASSERT_EQ(poses.cols(), 156);
+    EXPECT_EQ(poses.rightCols(90), hands);
+    EXPECT_LT((poses.leftCols(66) - body).norm(), 1e-12);
+    WriteAmassSmplx(path, motion, Eigen::Vector3d::Zero());
+    const NpzArrays arrays = ReadNpz(path);
+    EXPECT_EQ(arrays.at("poses").ToMatrix().rightCols(90), hands);
+    EXPECT_EQ(arrays.at("pose_hand").ToMatrix(), hands);
+    EXPECT_EQ(arrays.at("pose_jaw").ToMatrix(), RowMatrixXd::Constant(3, 3, middle == 0 ? 0 : 0.1));
+  }
+  motion.poses.conservativeResize(3, 90);
+  EXPECT_THROW(WriteAmass(path, motion, Eigen::Vector3d::Zero()), std::invalid_argument);
+}
+
 std::string AistPickle(const std::vector<double>& poses, const std::vector<int>& shape, double scaling) {
   using namespace pickle_writer;  // NOLINT(google-build-using-namespace)
   return Pickle(2, Dict({{Str2("smpl_poses"), Doubles2(poses, shape)},
