@@ -20,7 +20,7 @@ constexpr std::array<int, 17> kOf32 = {0, 1, 2, 3, 6, 7, 8, 12, 13, 14, 15, 17, 
 constexpr std::array<const char*, 15> kActions = {"Directions", "Discussion", "Eating",  "Greeting",    "Phoning",
                                                   "Posing",     "Purchases",  "Sitting", "SittingDown", "Smoking",
                                                   "Photo",      "Waiting",    "Walking", "WalkDog",     "WalkTogether"};
-constexpr int kFirstAction = 2, kMaxHuman36mFrames = 100'000;
+constexpr int kFirstAction = 2, kFitStep = 5, kMaxHuman36mFrames = 100'000;
 constexpr double kPlausible_m = 100;
 
 /// Action and subaction of a name.
@@ -131,7 +131,7 @@ Human36mClip Human36mFromJson(const JsonNode& document, const std::string& seque
 
 VideoTruth Human36mSmplFromJson(const JsonNode& document, const std::string& sequence, const NamedCamera& camera) {
   const std::map<int, JsonNode> frames = FramesOfSequence(document, sequence);
-  const int T = frames.rbegin()->first + 1;
+  const int T = frames.rbegin()->first + kFitStep;  // the video goes on to the next fit at most
   VideoTruth truth;
   truth.dataset = "Human3.6M";
   truth.protocol = "h36m-smpl";

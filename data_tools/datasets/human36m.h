@@ -46,7 +46,8 @@ bool HasHuman36mSmpl(const JsonNode& document);
 /// `sequence`: "ACTION/SUBACTION" ("2/1", or "Directions/1"). Throws as above.
 Human36mClip Human36mFromJson(const JsonNode& document, const std::string& sequence);
 
-/// SMPL's motion in the world, with `camera` standing still in it.
+/// SMPL's motion in the world, with `camera` standing still in it. Frames without a fit are lost, also the four after
+/// the last one.
 VideoTruth Human36mSmplFromJson(const JsonNode& document, const std::string& sequence, const NamedCamera& camera);
 
 }  // namespace bodyloom
