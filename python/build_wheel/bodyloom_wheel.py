@@ -81,11 +81,10 @@ def bundle(package):
     module = next(package.glob("_bodyloom*.so"))
     packages = bundle_libraries.bundle(module, package.parent / f"{NAME}.libs", bundle_libraries.COMPILER, unique_names=True)
     listed = (ROOT / "cmake" / "models.txt").read_text(encoding="utf-8")
-    networks = [ROOT / "build" / "models" / name for name in re.findall(r"^file +(\S+)", listed, re.M)]
-    if all(network.is_file() for network in networks):
-        (package / "models").mkdir()
-        for network in networks:
-            shutil.copy(network, package / "models")
+    for name in re.findall(r"^file +(\S+)", listed, re.M):
+        if (ROOT / "build" / "models" / name).is_file():
+            (package / "models").mkdir(exist_ok=True)
+            shutil.copy(ROOT / "build" / "models" / name, package / "models")
     return packages
 
 
