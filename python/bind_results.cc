@@ -21,9 +21,13 @@ namespace {
 
 constexpr const char* kEvaluateDoc = R"(A track against what is known: errors by name, with units in the name.
 
-truth     a Track, a track or part labels (.npz), an AIST++ folder or a Pose2Sim folder; None: the track alone
+truth     a Track, a track or part labels (.npz), a sequence of EMDB, 3DPW, RICH or Human3.6M, an AIST++ folder or a
+          Pose2Sim folder; None: the track alone
 body      Body that both were made with, or a file; None: the track's own
-cameras   AIST++: camera folder; sequence: name of the clip; view: the camera that the track was fitted to
+true_body, true_person   EMDB, 3DPW, RICH: file of the true motion's body; which of the people
+joint_regressor          J_regressor_h36m.npy: Human3.6M's joints of the vertices
+cameras   AIST++: camera folder, RICH and Human3.6M: the calibration; sequence: name of the clip; view: the camera that
+          the track was fitted to
 rig       RigCameras or a rig.json of a truth that is the track of several cameras (track_views()); `view`: the one
           that this track was fitted to ("": the first); equal_clocks: cameras whose clock is not known ran on the
           first one's
@@ -83,13 +87,18 @@ double ValueOf(const Evaluation& evaluation, const std::string& name) {
 }
 
 Evaluation EvaluateFromPython(const TrackArgument& track_argument, const std::optional<TrackArgument>& truth,
-                              const std::optional<BodyArgument>& body, const std::optional<Path>& cameras,
+                              const std::optional<BodyArgument>& body, const std::optional<Path>& true_body,
+                              int true_person, const std::optional<Path>& joint_regressor,
+                              const std::optional<Path>& cameras,
                               const std::string& sequence, const std::string& view,
                               const std::optional<RigArgument>& rig, bool equal_clocks, const py::object& progress) {
   const std::shared_ptr<TrackObject> track = TrackFrom(track_argument);
   const std::shared_ptr<const BodyModel> body_model = BodyOf(*track, body);
   EvaluateTrackRequest request;
   request.track = track->name;
+  request.true_body = TextOf(true_body);
+  request.true_person = true_person;
+  request.joint_regressor = TextOf(joint_regressor);
   request.cameras = TextOf(cameras);
   request.sequence = sequence;
   request.view = view;
@@ -162,7 +171,8 @@ void BindResults(py::module_& module) {
       .def("__str__", &EvaluationTable);
   const ExportTrackRequest defaults;
   module.def("evaluate", &EvaluateFromPython, py::arg("track"), py::arg("truth") = py::none(), py::kw_only(),
-             py::arg("body") = py::none(), py::arg("cameras") = py::none(), py::arg("sequence") = "",
+             py::arg("body") = py::none(), py::arg("true_body") = py::none(), py::arg("true_person") = 0,
+             py::arg("joint_regressor") = py::none(), py::arg("cameras") = py::none(), py::arg("sequence") = "",
              py::arg("view") = "", py::arg("rig") = py::none(), py::arg("equal_clocks") = false,
              py::arg("progress") = py::none(), kEvaluateDoc);
   module.def("export", &ExportFromPython, py::arg("tracks"), py::arg("out"), py::arg("form"), py::kw_only(),

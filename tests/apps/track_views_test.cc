@@ -103,7 +103,7 @@ TEST_F(TrackViewsVerb, ContradictionsAreErrors) {
   ExpectError(RunCommand(Track({"--view", "c01,c01"})), kExitUsage, "--view lists c01 twice");
   ExpectError(RunCommand(Track({"--view", "c01"})), kExitUsage, "2 files of --detections and 1 names");
   ExpectError(RunCommand(Track({"--camera", "weak"})), kExitUsage, "leave out --camera weak");
-  ExpectError(RunCommand(Track({"--camera-path", "x"})), kExitUsage, "leave out --camera-path");
+  ExpectError(RunCommand(Track({"--camera-path", "x"})), kExitUsage, "several views need a path each");
   ExpectError(RunCommand(Track({"--dense", "x"})), kExitUsage, "leave out --dense");
   ExpectError(RunCommand(Track({"--known", "poses"})), kExitUsage, "give --cameras");
   ExpectError(RunCommand(Track({"--known", "lenses"})), kExitUsage, "--known");

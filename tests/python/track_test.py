@@ -149,6 +149,28 @@ class Tracks(unittest.TestCase):
             alone = run_command("evaluate", "--track", folder / "track.npz")
             self.assertEqual(str(bodyloom.evaluate(tracked())), alone)
 
+    def test_evaluation_by_a_sequence_of_3dpw(self):
+        track = tracked()
+        frames = len(track.timestamps)
+        camera = np.array([[track.camera.fx, 0, track.camera.width / 2], [0, track.camera.fx, track.camera.height / 2], [0, 0, 1]])
+        sequence = {"sequence": "room", "genders": ["m", "m"], "cam_intrinsics": camera,
+                    "cam_poses": np.tile(np.eye(4), (frames, 1, 1)),
+                    "poses": [np.zeros((frames, 72)), np.array(track.poses)],
+                    "trans": [np.ones((frames, 3)), np.array(track.trans)],
+                    "betas": [np.zeros(10), np.array(track.betas)], "campose_valid": [np.ones(frames)] * 2}
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            truth = folder / "room.pkl"
+            truth.write_bytes(pickle.dumps(sequence, protocol=2))
+            track.save(folder / "track.npz")
+            table = run_command("evaluate", "--track", folder / "track.npz", "--truth", truth, "--true-person", "1")
+            second = bodyloom.evaluate(track, truth, true_person=1)
+            self.assertEqual(str(second), table)
+            self.assertEqual(second.protocol, "3dpw")
+            self.assertGreater(bodyloom.evaluate(track, truth)["mpjpe_mm"], second["mpjpe_mm"] + 50)
+            with self.assertRaisesRegex(RuntimeError, "expected one with number 2"):
+                bodyloom.evaluate(track, truth, true_person=2)
+
     def test_exports_are_the_command_s(self):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
