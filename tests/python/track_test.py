@@ -152,7 +152,7 @@ class Tracks(unittest.TestCase):
     def test_evaluation_by_a_sequence_of_3dpw(self):
         track = tracked()
         frames = len(track.timestamps)
-        camera = np.array([[track.camera.fx, 0, track.camera.width / 2], [0, track.camera.fx, track.camera.height / 2], [0, 0, 1]])
+        camera = np.array([[600.0, 0, 480], [0, 600, 360], [0, 0, 1]])
         sequence = {"sequence": "room", "genders": ["m", "m"], "cam_intrinsics": camera,
                     "cam_poses": np.tile(np.eye(4), (frames, 1, 1)),
                     "poses": [np.zeros((frames, 72)), np.array(track.poses)],
