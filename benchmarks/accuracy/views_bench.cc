@@ -224,7 +224,7 @@ BenchRow Measure(const BenchArguments& arguments, const MultiViewClip& clip, con
     return row;
   }
   for (const ViewSummary& view : result.joint.summary.views) {
-    if (std::isfinite(view.repeat_s)) std::fprintf(stderr, "  repeats after %.2f s", view.repeat_s);
+    if (std::isfinite(view.repeat_s)) std::fprintf(stderr, "  repeats after %.2f s\n", view.repeat_s);
   }
   const Evaluation evaluation = EvaluateAist(result.joint.track, clip, names[0]);
   for (const char* column : {"pa_mpjpe_mm", "room_g_mpjpe_mm", "room_wa_mpjpe_mm", "tilt_deg"}) {
