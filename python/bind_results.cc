@@ -89,8 +89,7 @@ double ValueOf(const Evaluation& evaluation, const std::string& name) {
 Evaluation EvaluateFromPython(const TrackArgument& track_argument, const std::optional<TrackArgument>& truth,
                               const std::optional<BodyArgument>& body, const std::optional<Path>& true_body,
                               int true_person, const std::optional<Path>& joint_regressor,
-                              const std::optional<Path>& cameras,
-                              const std::string& sequence, const std::string& view,
+                              const std::optional<Path>& cameras, const std::string& sequence, const std::string& view,
                               const std::optional<RigArgument>& rig, bool equal_clocks, const py::object& progress) {
   const std::shared_ptr<TrackObject> track = TrackFrom(track_argument);
   const std::shared_ptr<const BodyModel> body_model = BodyOf(*track, body);

@@ -226,13 +226,14 @@ void BindViews(py::module_& module) {
             progress);
       },
       py::arg("keypoints"), py::kw_only(), py::arg("views") = std::vector<std::string>(),
-      py::arg("cameras") = py::none(), py::arg("known") = ToString(defaults.known), py::arg("same_lens") = false, py::arg("image_size") = py::none(),
-      py::arg("fps") = py::none(), py::arg("focal_px") = py::none(), py::arg("focal_35mm") = py::none(),
-      py::arg("min_confidence") = 0.0, py::arg("convention") = "", py::arg("body") = py::none(),
-      py::arg("stature_m") = py::none(), py::arg("prior") = py::none(), py::arg("lifter") = py::none(),
-      py::arg("solver") = ToString(defaults.solve.solver), py::arg("threads") = defaults.solve.num_threads,
-      py::arg("max_iterations") = defaults.solve.max_iterations, py::arg("estimate_shape") = true,
-      py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("progress") = py::none(), kTrackViewsDoc);
+      py::arg("cameras") = py::none(), py::arg("known") = ToString(defaults.known), py::arg("same_lens") = false,
+      py::arg("image_size") = py::none(), py::arg("fps") = py::none(), py::arg("focal_px") = py::none(),
+      py::arg("focal_35mm") = py::none(), py::arg("min_confidence") = 0.0, py::arg("convention") = "",
+      py::arg("body") = py::none(), py::arg("stature_m") = py::none(), py::arg("prior") = py::none(),
+      py::arg("lifter") = py::none(), py::arg("solver") = ToString(defaults.solve.solver),
+      py::arg("threads") = defaults.solve.num_threads, py::arg("max_iterations") = defaults.solve.max_iterations,
+      py::arg("estimate_shape") = true, py::arg("uncertainty") = true, py::arg("ground") = true,
+      py::arg("progress") = py::none(), kTrackViewsDoc);
 }
 
 }  // namespace bodyloom::python

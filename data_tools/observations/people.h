@@ -22,8 +22,8 @@
 namespace bodyloom {
 
 struct DetectedPerson {
-  std::vector<Keypoint> points;                        ///< one per landmark of the convention
-  int identity = -1;                                   ///< from the detector's own tracker; −1 if it has none
+  std::vector<Keypoint> points;  ///< one per landmark of the convention
+  int identity = -1;             ///< from the detector's own tracker; −1 if it has none
   std::shared_ptr<const HandsAndFace> hands_and_face = nullptr;  ///< null: none
 };
 

@@ -194,7 +194,8 @@ TrackPeopleInViewsResult Solve(const TrackPeopleInVideosRequest& request, const 
   const size_t count = videos[0].seen.size();
   callbacks.Begin(
       Concatenate("tracking ", count, count == 1 ? " person in " : " people in ", videos.size(), " videos"));
-  TrackPeopleInViewsResult result = TrackPeopleInViews(ScenesOf(request, videos), videos[0].scene.ForTracker(), options);
+  TrackPeopleInViewsResult result =
+      TrackPeopleInViews(ScenesOf(request, videos), videos[0].scene.ForTracker(), options);
   if (cancelled) throw Cancelled();
   for (TrackSequenceResult& person : result.people) person.track.playback = videos[0].scene.playback;
   return result;

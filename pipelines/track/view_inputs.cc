@@ -91,15 +91,12 @@ void CheckTrackViewsRequest(const TrackViewsRequest& request) {
       if (!seen.insert(file).second) throw RequestError("--detections " + file + " is given twice");
     }
   }
-  const std::vector<std::pair<bool, std::string>> refused = {{request.camera == "weak", "--camera weak"},
-                                                             {!request.dense.empty(), "--dense"},
-                                                             {!request.part_labels.empty(), "--part-labels"},
-                                                             {!request.init.empty(), "--init"},
-                                                             {request.live_lag.has_value(), "--live"},
-                                                             {request.dense_uv_sigma.has_value(), "--dense-uv-sigma"}};
+  const std::vector<std::pair<bool, std::string>> refused = {
+      {request.camera == "weak", "--camera weak"},     {!request.dense.empty(), "--dense"},
+      {!request.part_labels.empty(), "--part-labels"}, {!request.init.empty(), "--init"},
+      {request.live_lag.has_value(), "--live"},        {request.dense_uv_sigma.has_value(), "--dense-uv-sigma"}};
   for (const auto& [given, option] : refused) {
-    if (given)
-      throw RequestError("several views are tracked by their 2D joints: leave out " + option);
+    if (given) throw RequestError("several views are tracked by their 2D joints: leave out " + option);
   }
   if (request.known != KnownOfRig::kClocks && request.cameras.empty()) {
     throw RequestError("--known says how much of --cameras to use: give --cameras FILE");

@@ -23,7 +23,7 @@ struct TrackViewsRequest : TrackRequest {
   std::vector<std::string> views;
   KnownOfRig known = KnownOfRig::kClocks;
   bool same_lens = false;  ///< all cameras are of one kind and not zoomed (kSameLensLogSigma)
-  std::string rig_out;  ///< the estimated rig (rig_io.h); empty: rig.json beside `out`
+  std::string rig_out;     ///< the estimated rig (rig_io.h); empty: rig.json beside `out`
 };
 
 /// True if the request names several files or several views.

@@ -22,7 +22,7 @@ struct ViewReport {
   std::string doubt;       ///< the reason to doubt that a view that was used shows the first one's motion; empty: none
   int frames = 0;          ///< of the first view's clip that it shows, too
   double repeat_s = std::numeric_limits<double>::quiet_NaN();  ///< as of ViewSummary
-  double fps = 0;          ///< median
+  double fps = 0;                                              ///< median
   double reprojection_median_px = 0;
 };
 

@@ -152,9 +152,10 @@ class SyntheticRig {
       options.camera_path.motion = cameras[v].motion;
       const Motion seen = Sampled(whole, cameras[v]);
       const bool moves = cameras[v].motion != SynthCameraMotion::kStill;
-      SynthClip& clip = clips.emplace_back(
-          moves ? MakeSynthClip(BuiltinBody(), seen, options)
-                : MakeSynthClip(BuiltinBody(), seen, PlaceSynthCamera(BuiltinBody(), spanned, options.camera), options));
+      SynthClip& clip =
+          clips.emplace_back(moves ? MakeSynthClip(BuiltinBody(), seen, options)
+                                   : MakeSynthClip(BuiltinBody(), seen,
+                                                   PlaceSynthCamera(BuiltinBody(), spanned, options.camera), options));
       if (noise.bias_m > 0) MoveOnBody(bias, &clip);
       if (!noise.feet) LeaveOutFeet(&clip.keypoints);
       HashRandom random(100 * seed + v, {7});

@@ -230,9 +230,8 @@ void ClipViews::Summarise(const SequenceProblem& problem, TrackSequenceSummary* 
     for (size_t t = 0; t < problem.frames.size(); ++t) {
       const auto& seen = problem.frames[t].views[v].terms.Get<LandmarkTerm>().seen;
       view.frames += seen.empty() ? 0 : 1;
-      const FrameState in_view =
-          StateInCamera(*layout.local, CameraOfView(problem.frames[t].views[v], state), problem.betas,
-                        problem.states[t]);
+      const FrameState in_view = StateInCamera(*layout.local, CameraOfView(problem.frames[t].views[v], state),
+                                               problem.betas, problem.states[t]);
       Kinematics kinematics;
       kinematics.Set(*problem.layout.model, problem.betas, in_view.rotations, in_view.translation, false);
       PointEvaluator points;
@@ -290,9 +289,10 @@ std::vector<PlanEntry> PlanViews(const TrackSequenceInput& input, const TrackSeq
     add(view.knowledge != CameraKnowledge::kKnown,
         view.focal_ratio_log_sigma > 0 ? "focal length, as the first one's" : "focal length");
     add(!view.clock_known, "clock");
-    entries.push_back({"view " + std::to_string(v + 2), true,
-                       (view.camera_from_own != nullptr ? "moves along its path, " : "") +
-                           (unknown.empty() ? "its camera and clock are known" : "estimated with the track: " + unknown)});
+    entries.push_back(
+        {"view " + std::to_string(v + 2), true,
+         (view.camera_from_own != nullptr ? "moves along its path, " : "") +
+             (unknown.empty() ? "its camera and clock are known" : "estimated with the track: " + unknown)});
   }
   return entries;
 }

@@ -45,8 +45,8 @@ std::string FindModelFile(const std::string& file, const std::string& folder) {
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   std::string looked;
-  for (const std::string& place : ModelFolders(folder, variable == nullptr ? "" : variable, program.string(),
-                                               SharedLibraryOfThisCode(program))) {
+  for (const std::string& place :
+       ModelFolders(folder, variable == nullptr ? "" : variable, program.string(), SharedLibraryOfThisCode(program))) {
     const fs::path path = fs::path(place) / file;
     if (fs::is_regular_file(path, ignored)) return path.string();
     looked += (looked.empty() ? "" : ", ") + place;

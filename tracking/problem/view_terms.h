@@ -32,9 +32,9 @@ namespace bodyloom {
 
 /// Terms of a frame in another view.
 struct ViewTerms {
-  int view = 0;          ///< index into FrameLayout::views and SharedValues::views
-  double clock_s = 0;    ///< τ
-  double sampled_s = 0;  ///< offset_s + rate τ of the times at which the terms were observed
+  int view = 0;                               ///< index into FrameLayout::views and SharedValues::views
+  double clock_s = 0;                         ///< τ
+  double sampled_s = 0;                       ///< offset_s + rate τ of the times at which the terms were observed
   std::optional<CameraPose> camera_from_own;  ///< at that time, of a view that moves, from its own scene
   TermList terms;
 };

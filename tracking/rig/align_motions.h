@@ -43,7 +43,7 @@ struct MotionAlignment {
   /// Of a motion that repeats itself: offset less offset_s of the other moment, more than half a second away, at which
   /// the motions agree best; there they must agree as well, or for three seconds within a tenth as well. NaN: none.
   double repeat_s = std::numeric_limits<double>::quiet_NaN();
-  double score = 0;             ///< n (d₀ − d) in m² s
+  double score = 0;  ///< n (d₀ − d) in m² s
 };
 
 /// Not found when less than a second (or a third of the shorter clip, if that is less) is shown by both, and when the

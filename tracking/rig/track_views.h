@@ -26,7 +26,7 @@ struct ObservedView {
   CameraKnowledge knowledge = CameraKnowledge::kUnknownFocal;  ///< kKnown or kUnknownFocal
   Camera camera;                                               ///< as of TrackSequenceInput
   std::optional<FocalPrior> focal_prior;
-  double focal_ratio_log_sigma = 0;  ///< as of ViewInput; of the first view it is not used
+  double focal_ratio_log_sigma = 0;                   ///< as of ViewInput; of the first view it is not used
   std::optional<CameraPose> camera_from_rig;          ///< where known; of every view in the same frame, or of none
   std::optional<double> offset_s;                     ///< its clock minus the first view's, where known
   const PictureVertical* picture_vertical = nullptr;  ///< as of TrackSequenceInput

@@ -354,7 +354,8 @@ TEST(TrackViewsRequest, ContradictionsAreNamed) {
   EXPECT_THAT([&] { RequestOfOneView(one); }, ThrowsMessage<RequestError>(HasSubstr("--rig-out is of several views")));
   one.rig_out.clear();
   one.same_lens = true;
-  EXPECT_THAT([&] { RequestOfOneView(one); }, ThrowsMessage<RequestError>(HasSubstr("--same-lens is of several views")));
+  EXPECT_THAT([&] { RequestOfOneView(one); },
+              ThrowsMessage<RequestError>(HasSubstr("--same-lens is of several views")));
 }
 
 TEST_F(TrackViewsClipTest, ItsRigIsExported) {

@@ -75,10 +75,10 @@ class ClipGround : public ClipTerm {
   const GroundOptions options_;
   const KeypointSequence* keypoints_;
   const KnownGround* known_;
-  const PictureVertical* lines_;                    ///< null: none
-  std::vector<const PictureVertical*> view_lines_;  ///< likewise, of each further view
+  const PictureVertical* lines_;                            ///< null: none
+  std::vector<const PictureVertical*> view_lines_;          ///< likewise, of each further view
   std::vector<const std::vector<CameraPose>*> view_paths_;  ///< of each further view; null: it stands still
-  double focal_log_sigma_ = 0;                      ///< of the focal length that the fit begins with; 0: known
+  double focal_log_sigma_ = 0;                              ///< of the focal length that the fit begins with; 0: known
   const std::vector<LiftedFrame>& lifted_;
   const LiftedLandmarks& landmarks_;
   const std::vector<ViewObservations>& views_;
