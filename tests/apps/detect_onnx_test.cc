@@ -25,7 +25,7 @@ class DetectOnnx : public ::testing::Test {
   void SetUp() override {
     std::filesystem::create_directories(folder_ / "clip");
     for (const char* name : {"clip/0.png", "clip/1.png"}) WriteImage(folder_ / name, Image(320, 320));
-    Write("net.onnx", ScriptedYoloPose({1, 3, 640, 640}, {StandingPerson(300, 320, 400, 0.9F, 0.75F)}, 17, 80).Bytes());
+    Write("net.onnx", ScriptedYoloPose({1, 3, 640, 640}, {ScriptedStanding(300, 320, 400, 0.9F, 0.75F)}, 17, 80).Bytes());
   }
   void Write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;

@@ -39,10 +39,10 @@ class OnnxClip : public ::testing::Test {
       std::snprintf(name, sizeof name, "clip/%03d.png", t);
       WriteImage(folder_ / name, Image(320, 180, {uint8_t(51 * t), 0, 0}));
     }
-    ScriptedPerson walker = StandingPerson(120, 320, 200, 0.9F, 0.5F);
+    ScriptedPerson walker = ScriptedStanding(120, 320, 200, 0.9F, 0.5F);
     walker.right = 20;
     std::ofstream(folder_ / "net.onnx", std::ios::binary)
-        << ScriptedYoloPose({1, 3, 640, 640}, {walker, StandingPerson(450, 320, 320, 0.6F, 1)}, 17, 80).Bytes();
+        << ScriptedYoloPose({1, 3, 640, 640}, {walker, ScriptedStanding(450, 320, 320, 0.6F, 1)}, 17, 80).Bytes();
   }
   [[nodiscard]] DetectClipRequest Request() const {
     DetectClipRequest request;
@@ -150,7 +150,7 @@ TEST_F(OnnxClip, TracksWithoutAMask) {
   EXPECT_EQ(report.num_frames, kFrames);
   const ::bodyloom::Track track = ReadTrack(folder_ / "track.npz");
   EXPECT_THAT(track.frame_status, ::testing::Each(FrameStatus::kTracked));
-  EXPECT_LT(WorstError(track, StandingPerson(450, 320, 320, 1, 1)), 12);  // of a person 160 pixels tall
+  EXPECT_LT(WorstError(track, ScriptedStanding(450, 320, 320, 1, 1)), 12);  // of a person 160 pixels tall
 }
 
 TEST_F(OnnxClip, RunTracksEverybody) {
@@ -163,7 +163,7 @@ TEST_F(OnnxClip, RunTracksEverybody) {
   EXPECT_EQ(report.network, "net.onnx");
   ASSERT_EQ(report.people.size(), 2U);
   EXPECT_THAT(report.outputs, Contains(folder_ / "out/person_1.npz"));
-  EXPECT_LT(WorstError(ReadTrack(folder_ / "out/person_0.npz"), StandingPerson(450, 320, 320, 1, 1)), 12);
+  EXPECT_LT(WorstError(ReadTrack(folder_ / "out/person_0.npz"), ScriptedStanding(450, 320, 320, 1, 1)), 12);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ Image TestImage(uint8_t red = 0) { return {1280, 720, Colour{red, 0, 0}}; }
 
 TEST_F(OnnxDetectors, YoloPoseFindsEverybody) {
   // The letterbox halves the picture and begins 140 rows below.
-  const KeypointModel model(Yolo({StandingPerson(100, 300, 200, 0.5F, 0.25F), StandingPerson(400, 350, 300, 0.9F, 1)}));
+  const KeypointModel model(Yolo({ScriptedStanding(100, 300, 200, 0.5F, 0.25F), ScriptedStanding(400, 350, 300, 0.9F, 1)}));
   EXPECT_EQ(model.family(), KeypointFamily::kYoloPose);
   EXPECT_EQ(model.convention().name, "coco17");
   const std::vector<YoloPerson> people = model.FindPeople(TestImage());
@@ -93,7 +93,7 @@ TEST_F(OnnxDetectors, LandmarksByTheirNumber) {
 
 TEST_F(OnnxDetectors, OpenSizes) {
   const KeypointModel model(
-      Write("open.onnx", ScriptedYoloPose({-1, 3, -1, -1}, {StandingPerson(100, 300, 200, 0.5F, 1)}, 17, 80)));
+      Write("open.onnx", ScriptedYoloPose({-1, 3, -1, -1}, {ScriptedStanding(100, 300, 200, 0.5F, 1)}, 17, 80)));
   const std::vector<YoloPerson> people = model.FindPeople(TestImage());
   ASSERT_EQ(people.size(), 1U);
   EXPECT_NEAR(people[0].points[0].y, 2 * (300 - 0.44 * 200 - 140), 1e-3);  // as in 640 × 640
@@ -120,9 +120,9 @@ TEST_F(OnnxDetectors, ShapesThatAreNotKnownAreSaid) {
 }
 
 TEST_F(OnnxDetectors, FramesOfYoloPose) {
-  ScriptedPerson walker = StandingPerson(100, 300, 200, 0.5F, 0.75F);
+  ScriptedPerson walker = ScriptedStanding(100, 300, 200, 0.5F, 0.75F);
   walker.right = 51;
-  const auto detector = MakeFrameDetector(With(Yolo({walker, StandingPerson(400, 350, 300, 0.9F, 1)})));
+  const auto detector = MakeFrameDetector(With(Yolo({walker, ScriptedStanding(400, 350, 300, 0.9F, 1)})));
   EXPECT_EQ(detector->convention().name, "coco17");
   // The letterbox shows the picture's red in 360 of 640 rows, and grey in the others.
   const std::vector<Image> frames = {TestImage(0), TestImage(255)};

@@ -61,7 +61,7 @@ inline OnnxWriter ScriptedYoloPose(const std::vector<int64_t>& input, const std:
 }
 
 /// A standing COCO person: 17 landmarks within a box of this centre and height, all with this visibility.
-inline ScriptedPerson StandingPerson(float x, float y, float height, float score, float visibility) {
+inline ScriptedPerson ScriptedStanding(float x, float y, float height, float score, float visibility) {
   constexpr float kPlaces[17][2] = {
       {0, -0.44F},      {0.02F, -0.46F}, {-0.02F, -0.46F}, {0.04F, -0.45F}, {-0.04F, -0.45F}, {0.11F, -0.32F},
       {-0.11F, -0.32F}, {0.14F, -0.16F}, {-0.14F, -0.16F}, {0.15F, -0.01F}, {-0.15F, -0.01F}, {0.06F, 0.02F},
@@ -116,7 +116,7 @@ inline std::vector<OnnxWriter> SmallOnnxNetworks() {
   shapes.Floats("w", {3, 2}, {1, 2, 3, 4, 5, 6}).Node("MatMul", {"m", "w"}, {"y"}).Node("Add", {"y", "u"}, {"z"});
   shapes.Node("Softmax", {"z"}, {"out"}, {OnnxWriter::Integer("axis", 1)});
   shapes.Node("Transpose", {"out"}, {"t"}, {OnnxWriter::Integers("perm", {1, 0})}).Output("t");
-  networks.push_back(ScriptedYoloPose({1, 3, 8, 8}, {StandingPerson(4, 4, 6, 0.9F, 0.5F)}, 17, 60));
+  networks.push_back(ScriptedYoloPose({1, 3, 8, 8}, {ScriptedStanding(4, 4, 6, 0.9F, 0.5F)}, 17, 60));
   return networks;
 }
 
