@@ -237,8 +237,8 @@ void AddOtherTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
       ->capture_default_str();
   app.add_option("--init", c.init,
                  "poses of another system to start from and stay near: wham_output.pkl, vibe_output.pkl, PHALP's, "
-                 "4D-Humans' or "
-                 "PromptHMR's .pkl, GVHMR's, GEM's or GEM-X's .pt, SAM 3D Body's .npz or .json (or a folder of them), "
+                 "4D-Humans' or PromptHMR's .pkl, GVHMR's, GEM's or GEM-X's .pt, SAM 3D Body's .npz or .json (or a "
+                 "folder of them), "
                  "SAM3DBody-cpp's .csv, or a track .npz")
       ->group(kKnown)
       ->type_name("FILE");

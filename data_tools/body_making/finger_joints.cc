@@ -432,20 +432,6 @@ std::map<int, std::vector<CorrectiveBlock>> FitCorrectives(const BodyModelData& 
   return blocks;
 }
 
-void PutWeights(const RefinedCage& refined, const std::vector<WeightedIndices>& left, int num_joints,
-                const std::vector<int>& joint_mirror, BodyModelData* body) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (size_t i = 0; i < refined.left_vertices.size(); ++i) {
-    const int v = refined.left_vertices[i];
-    for (const auto& [joint, weight] : left[i]) {
-      entries.emplace_back(v, joint, weight);
-      if (refined.mirror[v] != v) entries.emplace_back(refined.mirror[v], joint_mirror[joint], weight);
-    }
-  }
-  body->weights.resize(body->v_template.rows(), num_joints);
-  body->weights.setFromTriplets(entries.begin(), entries.end());
-}
-
 void PutCorrectives(const RefinedCage& refined, const std::map<int, std::vector<CorrectiveBlock>>& left,
                     const std::vector<int>& joint_mirror, BodyModelData* body) {
   std::map<int, std::vector<CorrectiveBlock>> added = left;
@@ -512,7 +498,7 @@ void AddFingerJoints(const Cage& cage, const RefinedCage& refined, BodyModelData
   body->J_regressor.resize(kJoints, body->v_template.rows());
   body->J_regressor.setFromTriplets(regressor.begin(), regressor.end());
   const std::vector<WeightedIndices> weights = DivideWeights(*body, hand, refined.left_vertices);
-  PutWeights(refined, weights, kJoints, joint_mirror, body);
+  FillWeights(refined, joint_mirror, weights, body);
   for (const HandSide side : {HandSide::kLeft, HandSide::kRight}) {
     const std::vector<Landmark> landmarks = HandLandmarks(*body, side, tips[static_cast<size_t>(side)]);
     body->landmarks.insert(body->landmarks.end(), landmarks.begin(), landmarks.end());

@@ -55,21 +55,6 @@ void FillShape(const Cage& cage, const RefinedCage& refined, const Eigen::Matrix
   }
 }
 
-void FillWeights(const RefinedCage& refined, const std::vector<int>& joint_mirror,
-                 const std::vector<WeightedIndices>& left_weights, BodyModelData* body) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (size_t i = 0; i < refined.left_vertices.size(); ++i) {
-    const int v = refined.left_vertices[i];
-    for (const auto& [joint, weight] : left_weights[i]) {
-      entries.emplace_back(v, joint, weight);
-      if (refined.mirror[v] != v) entries.emplace_back(refined.mirror[v], joint_mirror[joint], weight);
-    }
-  }
-  body->weights.resize(static_cast<Eigen::Index>(refined.mirror.size()),
-                       static_cast<Eigen::Index>(joint_mirror.size()));
-  body->weights.setFromTriplets(entries.begin(), entries.end());
-}
-
 void FillRegressor(const RefinedCage& refined, const std::vector<int>& joint_mirror,
                    const std::vector<int>& left_joints, const std::vector<WeightedIndices>& rows, BodyModelData* body) {
   std::vector<Eigen::Triplet<double>> entries;

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "data_tools/body_making/cage.h"
+#include "data_tools/body_making/left_half_arrays.h"
+#include "geometry/body/body_model.h"
 #include "geometry/math/arrays.h"
 
 namespace bodyloom {
@@ -23,5 +25,10 @@ struct RefinedCage {
 
 /// Throws std::invalid_argument when the cage cannot be subdivided or is not symmetric.
 RefinedCage RefineCage(const Cage& cage);
+
+/// Sets the skinning weights of both halves from those of the left vertices, in the order of `left_vertices`;
+/// `joint_mirror` has an entry for each of the body's joints.
+void FillWeights(const RefinedCage& refined, const std::vector<int>& joint_mirror,
+                 const std::vector<WeightedIndices>& left_weights, BodyModelData* body);
 
 }  // namespace bodyloom

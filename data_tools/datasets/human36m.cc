@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -139,17 +138,9 @@ VideoTruth Human36mSmplFromJson(const JsonNode& document, const std::string& seq
   truth.gender = "neutral";
   truth.fps = kHuman36mFps;
   Track& track = truth.track;
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   track.motion.body = "smpl";
-  track.motion.up = Motion::Up::kCamera;
-  track.motion.poses.setConstant(T, 72, kNaN);
-  track.motion.trans.setConstant(T, 3, kNaN);
   track.motion.betas.setZero(10);
-  track.frame_status.assign(size_t(T), FrameStatus::kLost);
-  track.weak_camera.resize(0, 3);
-  track.camera = camera.camera;
-  track.camera_from_scene.assign(size_t(T), camera.pose);
-  for (int t = 0; t < T; ++t) track.motion.timestamps.push_back(t / truth.fps);
+  SetLostFrames(T, 72, camera, &truth);
   for (const auto& [t, node] : frames) {
     const std::vector<double> pose = node.At("pose").Numbers(72), shape = node.At("shape").Numbers(10),
                               trans = node.At("trans").Numbers(3);

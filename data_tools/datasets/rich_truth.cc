@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -185,16 +184,8 @@ VideoTruth ReadRichTruth(const std::string& folder, int person, const NamedCamer
   truth.subject = subject;
   truth.num_people = int(subjects.size());
   Track& track = truth.track;
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   track.motion.body = "smplx";
-  track.motion.up = Motion::Up::kCamera;
-  track.motion.poses.setConstant(T, kRichPose, kNaN);
-  track.motion.trans.setConstant(T, 3, kNaN);
-  track.frame_status.assign(size_t(T), FrameStatus::kLost);
-  track.weak_camera.resize(0, 3);
-  track.camera = camera.camera;
-  track.camera_from_scene.assign(size_t(T), camera.pose);
-  for (int t = 0; t < T; ++t) track.motion.timestamps.push_back(t / truth.fps);
+  SetLostFrames(T, kRichPose, camera, &truth);
   int seen = 0;
   for (const std::string& frame : frames) {
     if (subjects_of[std::stoi(frame)].count(subject) == 0) continue;

@@ -197,6 +197,19 @@ VideoTruth VideoTruthFromPickle(const PickleValue& file, int person, const std::
   return truth;
 }
 
+void SetLostFrames(int T, Eigen::Index columns, const NamedCamera& camera, VideoTruth* truth) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  Track& track = truth->track;
+  track.motion.up = Motion::Up::kCamera;
+  track.motion.poses.setConstant(T, columns, kNaN);
+  track.motion.trans.setConstant(T, 3, kNaN);
+  track.frame_status.assign(size_t(T), FrameStatus::kLost);
+  track.weak_camera.resize(0, 3);
+  track.camera = camera.camera;
+  track.camera_from_scene.assign(size_t(T), camera.pose);
+  for (int t = 0; t < T; ++t) track.motion.timestamps.push_back(t / truth->fps);
+}
+
 std::vector<int> FramesNearTimes(int num_frames, double fps, const std::vector<double>& times_s,
                                  const std::string& where) {
   std::vector<int> frames;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "data_tools/formats/pickle.h"
+#include "data_tools/observations/load_cameras.h"
 #include "geometry/scene/track.h"
 
 namespace bodyloom {
@@ -36,6 +37,10 @@ struct VideoTruth {
 /// The motion of one of the file's people, counted from 0. Throws std::runtime_error naming `where`, the key, what it
 /// holds and what was expected, also when there are fewer people.
 VideoTruth VideoTruthFromPickle(const PickleValue& file, int person, const std::string& where);
+
+/// Sets T frames that are all lost, at `truth->fps` from time 0, with `columns` of poses, seen by a camera that stands
+/// still in the world.
+void SetLostFrames(int T, Eigen::Index columns, const NamedCamera& camera, VideoTruth* truth);
 
 /// The frames of `num_frames` at `fps` from time 0 that are nearest to these times, seconds. Throws std::runtime_error
 /// naming `where` when one of them is before the first or after the last.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`pip install` of the source tree with the existing build, and the examples."""
+import json
 import os
 import pathlib
 import re
@@ -26,6 +27,11 @@ class Packages(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
+    def build_wheel(self, **settings):
+        program = ("import json, sys; sys.path.insert(0, sys.argv[1]); import bodyloom_wheel as b; "
+                   "print(b.build_wheel(sys.argv[2], json.loads(sys.argv[3])))")
+        return run("-c", program, SOURCE / "python" / "build_wheel", self.folder, json.dumps(settings))
+
     def test_pip_install(self):
         if run("-m", "pip", "--version").returncode != 0:
             self.skipTest("no pip here (Debian package python3-pip)")
@@ -39,8 +45,7 @@ class Packages(unittest.TestCase):
         self.assertLessEqual({"__init__.py", "__init__.pyi", "py.typed"}, names)
 
     def test_the_wheel(self):
-        build = "import sys; sys.path.insert(0, sys.argv[1]); import bodyloom_wheel as b; print(b.build_wheel(sys.argv[2], {'build-dir': sys.argv[3]}))"
-        done = run("-c", build, SOURCE / "python" / "build_wheel", self.folder, BUILD)
+        done = self.build_wheel(**{"build-dir": BUILD})
         self.assertEqual(done.returncode, 0, done.stderr)
         name = done.stdout.strip()
         self.assertRegex(name, r"^bodyloom-[\d.]+-cp3\d+-cp3\d+-linux_\w+\.whl$")
@@ -55,9 +60,7 @@ class Packages(unittest.TestCase):
     def test_the_wheel_with_its_libraries(self):
         if not shutil.which("patchelf"):
             self.skipTest("no patchelf here (Debian package patchelf)")
-        build = ("import sys; sys.path.insert(0, sys.argv[1]); import bodyloom_wheel as b; "
-                 "print(b.build_wheel(sys.argv[2], {'build-dir': sys.argv[3], 'libraries': 'bundle'}))")
-        done = run("-c", build, SOURCE / "python" / "build_wheel", self.folder, BUILD)
+        done = self.build_wheel(**{"build-dir": BUILD, "libraries": "bundle"})
         self.assertEqual(done.returncode, 0, done.stderr)
         name = done.stdout.strip()
         self.assertRegex(name, r"^bodyloom-[\d.]+-cp3\d+-cp3\d+-manylinux_2_\d+_\w+\.whl$")
@@ -79,9 +82,7 @@ class Packages(unittest.TestCase):
         self.assertEqual([path for path in outside if not system.search(path)], [])
 
     def test_an_unknown_kind_of_libraries(self):
-        build = ("import sys; sys.path.insert(0, sys.argv[1]); import bodyloom_wheel as b; "
-                 "b.build_wheel(sys.argv[2], {'libraries': 'some'})")
-        done = run("-c", build, SOURCE / "python" / "build_wheel", self.folder)
+        done = self.build_wheel(libraries="some")
         self.assertIn('libraries=some: expected "bundle" or nothing', done.stderr)
 
     def example(self, name, *words):
