@@ -39,7 +39,7 @@ std::vector<PersonOnPage> PeopleOnPage(const TrackPeopleReport& report, const Bo
   return on_page;
 }
 
-void EndReport(StageTimes* clock, TrackPeopleReport* report) {
+void EndReport(StageClock* clock, TrackPeopleReport* report) {
   clock->End();
   report->seconds = clock->seconds();
   report->processor_seconds = clock->processor_seconds();
@@ -47,7 +47,7 @@ void EndReport(StageTimes* clock, TrackPeopleReport* report) {
   report->peak_memory_bytes = PeakMemoryBytes();
 }
 
-void WriteSummary(const std::string& folder, StageTimes* clock, TrackPeopleReport* report) {
+void WriteSummary(const std::string& folder, StageClock* clock, TrackPeopleReport* report) {
   EndReport(clock, report);
   report->outputs.push_back((std::filesystem::path(folder) / "summary.json").string());
   WriteFileAtomically(report->outputs.back(), ToJson(*report));

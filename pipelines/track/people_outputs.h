@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/base/stage_times.h"
+#include "geometry/base/stopwatch.h"
 #include "geometry/body/body_model.h"
 #include "pipelines/page/write_clip_page.h"
 #include "pipelines/track/track_people_report.h"
@@ -24,8 +24,8 @@ std::vector<PersonOnPage> PeopleOnPage(const TrackPeopleReport& report, const Bo
                                        const std::vector<TrackSequenceResult>& people);
 
 /// Ends the clock and puts its stages and the memory into the report.
-void EndReport(StageTimes* clock, TrackPeopleReport* report);
+void EndReport(StageClock* clock, TrackPeopleReport* report);
 /// The same, and writes the report as summary.json in the folder.
-void WriteSummary(const std::string& folder, StageTimes* clock, TrackPeopleReport* report);
+void WriteSummary(const std::string& folder, StageClock* clock, TrackPeopleReport* report);
 
 }  // namespace bodyloom

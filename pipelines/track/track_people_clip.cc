@@ -122,7 +122,7 @@ void WriteReportPage(const TrackPeopleClipRequest& request, const SceneInputs& s
 TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, const PipelineCallbacks& callbacks,
                                   const GivenInMemory& given) {
   CheckClipRequest(given_request, given);
-  StageTimes clock;
+  StageClock clock;
   clock.Begin("read");
   TrackPeopleClipRequest request = given_request;
   request.track = WithTurn(request.track, callbacks);
@@ -158,7 +158,7 @@ TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& given_request, const
                                   const GivenInMemory& given) {
   CheckRequest(given_request, given);
   RequireFiles(given_request.track, given_request.track.detector);
-  StageTimes clock;
+  StageClock clock;
   clock.Begin("read");
   TrackPeopleRequest request = given_request;
   request.track = WithTurn(request.track, callbacks);

@@ -340,7 +340,7 @@ TrackPeopleReport TrackPeopleInVideos(const TrackPeopleInVideosRequest& request,
   if (!HasSeveralVideos(request)) throw RequestError("one video, expected several");
   const std::vector<std::string> names = NamesOfViews(request.views, request.videos);
   CheckVideosRequest(request, names);
-  StageTimes clock;
+  StageClock clock;
   clock.Begin("read");
   std::vector<VideoOfView> videos = LoadVideos(request, names, body, callbacks);
   clock.Begin("detect");

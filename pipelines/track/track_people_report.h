@@ -51,7 +51,7 @@ struct TrackPeopleReport {
   std::vector<ViewReport> views;  ///< of several videos, the first's first
   CameraPathReport camera_path;
   CameraPathSummary camera_scale;           ///< scale of the path, common to all tracks
-  StageSeconds seconds, processor_seconds;  ///< StageTimes'
+  StageSeconds seconds, processor_seconds;  ///< StageClock'
   double total_seconds = 0;
   size_t peak_memory_bytes = 0;
   std::vector<std::string> outputs;  ///< files written

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry/base/stage_times.h"
+#include "geometry/base/stopwatch.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <ctime>
 #include <thread>
 
-namespace bodyloom::stage_times_test {
+namespace bodyloom::stopwatch_test {
 namespace {
 
 /// Keeps one core busy for so much processor time.
@@ -16,8 +17,8 @@ void Work(double seconds) {
   }
 }
 
-TEST(StageTimes, WorkTakesProcessorTimeAndWaitingDoesNot) {
-  StageTimes times;
+TEST(StageClock, WorkTakesProcessorTimeAndWaitingDoesNot) {
+  StageClock times;
   times.Begin("work");
   Work(0.05);
   times.Begin("wait");
@@ -37,4 +38,4 @@ TEST(StageTimes, WorkTakesProcessorTimeAndWaitingDoesNot) {
 }
 
 }  // namespace
-}  // namespace bodyloom::stage_times_test
+}  // namespace bodyloom::stopwatch_test
