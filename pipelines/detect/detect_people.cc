@@ -11,6 +11,7 @@
 #include "geometry/base/callbacks.h"
 #include "geometry/base/check.h"
 #include "geometry/base/prefetcher.h"
+#include "geometry/base/rate_gate.h"
 #include "pipelines/files.h"
 #include "pipelines/video/track_video.h"
 #include "tracking/detection/people_between.h"
@@ -49,11 +50,14 @@ class ClipDetector {
         rate_(request.detect_rate),
         maximum_((rate_ > 0 ? std::min(rate_, fps) : fps) < kSlowFps ? 1 : FrameDetector::kFramesAtOnce),
         with_masks_(request.detector.blazepose.masks),
+        all_masks_(request.all_masks),
+        mask_gate_(request.mask_rate),
         clip_(clip) {
     clip->people.convention = detector_->convention();
   }
 
-  void Add(TimedFrame frame) {
+  /// needs_mask: in any case, if there are masks.
+  void Add(TimedFrame frame, bool needs_mask) {
     clip_->people.frames.emplace_back();
     clip_->people.timestamps.push_back(frame.time_s);
     if (with_masks_) clip_->masks.emplace_back();
@@ -61,11 +65,13 @@ class ClipDetector {
     detected_.push_back(is_due ? 1 : 0);
     if (!is_due) {
       skipped_ = std::move(frame.image);
+      clip_->mask_is_due.push_back(0);
       return;
     }
     skipped_ = {};
     due_s_ = rate_ > 0 ? frame.time_s + 1 / rate_ : frame.time_s;
-    Take(std::move(frame.image));
+    clip_->mask_is_due.push_back(mask_gate_.Passes(frame.time_s) ? 1 : 0);
+    Take(std::move(frame.image), needs_mask);
     if (int(waiting_.size()) == maximum_) Detect();
   }
 
@@ -73,7 +79,8 @@ class ClipDetector {
   void Finish() {
     if (!skipped_.empty()) {
       detected_.back() = 1;
-      Take(std::move(skipped_));
+      clip_->mask_is_due.back() = 1;
+      Take(std::move(skipped_), true);
     }
     if (!waiting_.empty()) Detect();
     if (rate_ > 0) FillBetween(detected_, &clip_->people);
@@ -82,13 +89,14 @@ class ClipDetector {
   }
 
  private:
-  void Take(Image image) {
+  void Take(Image image, bool needs_mask) {
     waiting_.push_back(std::move(image));
+    waiting_with_mask_.push_back(needs_mask || all_masks_ || clip_->mask_is_due.back() != 0 ? 1 : 0);
     places_.push_back(detected_.size() - 1);
   }
 
   void Detect() {
-    std::vector<std::vector<FramePerson>> found = detector_->Detect(waiting_);
+    std::vector<std::vector<FramePerson>> found = detector_->Detect(waiting_, waiting_with_mask_);
     for (size_t i = 0; i < found.size(); ++i) {
       const size_t place = places_[i];
       for (FramePerson& person : found[i]) {
@@ -98,6 +106,7 @@ class ClipDetector {
       if (rate_ > 0) SeeHowFast(place);
     }
     waiting_.clear();
+    waiting_with_mask_.clear();
     places_.clear();
   }
 
@@ -113,10 +122,12 @@ class ClipDetector {
   std::unique_ptr<FrameDetector> detector_;
   double rate_;
   int maximum_;
-  bool with_masks_;
+  bool with_masks_, all_masks_;
+  RateGate mask_gate_;
   DetectedClip* clip_;
   std::vector<char> detected_;
   std::vector<Image> waiting_;
+  std::vector<char> waiting_with_mask_;
   std::vector<size_t> places_;  ///< of those waiting
   Image skipped_;               ///< the latest frame, when it was not due
   double due_s_ = 0;
@@ -154,8 +165,8 @@ DetectedClip DetectOnce(const DetectPeopleRequest& request, const PipelineCallba
   Prefetcher<TimedFrame> frames(
       std::numeric_limits<int64_t>::max(), [&](int64_t) { return NextFrame(&source); }, kFramesAhead);
   for (TimedFrame frame = frames.Take(); !frame.image.empty(); frame = frames.Take()) {
-    if (request.keep_samples) clip.samples.Add(frame.image);
-    detector.Add(std::move(frame));
+    const bool is_sample = request.keep_samples && clip.samples.Add(frame.image);
+    detector.Add(std::move(frame), is_sample);
     callbacks.Update("detect", num_frames > 0 ? std::min(1.0, clip.people.frames.size() / double(num_frames)) : 0);
   }
   if (clip.people.frames.empty()) {

@@ -23,6 +23,8 @@ DetectPeopleRequest DetectionOf(const TrackSettings& request, int max_people) {
   detect.detector = request.detector;
   detect.detector.blazepose.masks = DetectsMasks(request);
   detect.detector.blazepose.max_people = max_people;
+  detect.mask_rate = request.solve.coarse_rate;  // the frames whose masks the tracker uses
+  detect.all_masks = request.all_masks;
   detect.detect_rate = request.detect_rate;
   detect.keep_samples = request.use_lines;
   return detect;
@@ -44,7 +46,13 @@ DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack&
   DropUnsure(request.min_confidence, &seen.keypoints);
   seen.hands_and_face = CutFrames(HandsAndFaceOf(clip.people, person), frames.first, frames.second);
   DropUnsure(request.min_confidence, &seen.hands_and_face);
-  if (DetectsMasks(request)) seen.mask = CutFrames(MaskOfPerson(clip, person), frames.first, frames.second);
+  if (DetectsMasks(request)) {
+    PartLabelSequence mask = MaskOfPerson(clip, person);
+    for (size_t t = 0; t < mask.frames.size(); ++t) {
+      if (clip.mask_is_due[t] == 0) mask.frames[t] = {};
+    }
+    seen.mask = CutFrames(std::move(mask), frames.first, frames.second);
+  }
   if (same_pixels) return seen;
   seen.keypoints = MovedToCamera(std::move(seen.keypoints), map, camera.width, camera.height);
   seen.hands_and_face = MovedToCamera(std::move(seen.hands_and_face), map, camera.width, camera.height);

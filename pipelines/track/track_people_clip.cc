@@ -126,6 +126,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   clock.Begin("read");
   TrackPeopleClipRequest request = given_request;
   request.track = WithTurn(request.track, callbacks);
+  request.track.all_masks = request.masks;
   const SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);

@@ -42,6 +42,7 @@ struct DetectionSettings {
   FrameDetectorOptions detector;  ///< its masks and max_people are not used
   double detect_rate = 0;         ///< detection rate in slow motion, frames per second; 0: all frames
   bool use_mask = true;           ///< the person's mask becomes the silhouette term
+  bool all_masks = false;         ///< detect masks in all frames, not only in those that the term uses
   double from_s = 0, to_s = -1;   ///< range of the video, or of the detections, seconds; to_s < 0: to the end
   double fps = 0;                 ///< frame rate without timestamps; 0: the video's, else 30
   double min_confidence = 0;      ///< landmarks below it are treated as missing

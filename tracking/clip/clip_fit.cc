@@ -212,7 +212,11 @@ void ClipFit::Observe() {
   for (const auto& term : terms_) term->BeginFit(&problem_);
   summary_.num_parameters = static_cast<int>(T) * problem_.layout.num_frame_columns() + problem_.layout.num_columns -
                             problem_.layout.beta_column;
-  coarse_frames_ = FramesAtRate(problem_, options_.coarse_rate);
+  std::vector<char> anchors;
+  for (const auto& term : terms_) {
+    if (anchors.empty()) anchors = term->SparseFrames();
+  }
+  coarse_frames_ = FramesAtRate(problem_, options_.coarse_rate, anchors);
   stages_ = StagesFor(input_, options_, coarse_frames_.size() < T);
   runner_.emplace(input_, options_, threads_, &clock_, &summary_);
 }

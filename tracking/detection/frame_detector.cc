@@ -44,9 +44,10 @@ class BlazePoseFrames : public FrameDetector {
 
   [[nodiscard]] const KeypointConvention& convention() const override { return MediaPipe33(); }
 
-  std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames) override {
+  std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
+                                               std::span<const char> with_mask) override {
     std::vector<std::vector<FramePerson>> result;
-    std::vector<std::vector<DetectedPose>> detected = detector_.Detect(frames);
+    std::vector<std::vector<DetectedPose>> detected = detector_.Detect(frames, with_mask);
     for (std::vector<DetectedPose>& poses : detected) {
       std::vector<FramePerson>& people = result.emplace_back();
       for (DetectedPose& pose : poses) people.push_back({ToPerson(pose), std::move(pose.mask)});
@@ -86,7 +87,8 @@ class YoloPoseFrames : public FrameDetector {
 
   [[nodiscard]] const KeypointConvention& convention() const override { return model_.convention(); }
 
-  std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames) override {
+  std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
+                                               std::span<const char> /*with_mask*/) override {
     const Stopwatch watch;
     std::vector<std::vector<FramePerson>> result(frames.size());
     ParallelFor(int(frames.size()), options_.num_threads, [&](int i) {
@@ -122,7 +124,8 @@ class RtmPoseFrames : public FrameDetector {
 
   [[nodiscard]] const KeypointConvention& convention() const override { return model_.convention(); }
 
-  std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames) override {
+  std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
+                                               std::span<const char> /*with_mask*/) override {
     const std::vector<std::vector<PersonBox>> boxes = Boxes(frames);
     const Stopwatch watch;
     std::vector<std::vector<FramePerson>> result(frames.size());

@@ -44,7 +44,9 @@ class FrameDetector {
   /// Of the people's landmarks.
   [[nodiscard]] virtual const KeypointConvention& convention() const = 0;
   /// The next frames of the clip, all of one size: a group of 1 to kFramesAtOnce. Returns the people of each.
-  virtual std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames) = 0;
+  /// with_mask: as PeopleDetector::Detect().
+  virtual std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
+                                                       std::span<const char> with_mask = {}) = 0;
   [[nodiscard]] virtual PeopleDetectorSummary summary() const = 0;
 };
 

@@ -91,7 +91,7 @@ size_t NumPixels(const FrameSamples& samples) { return size_t(samples.width()) *
 
 }  // namespace
 
-void FrameSamples::Add(const Image& frame) {
+bool FrameSamples::Add(const Image& frame) {
   if (samples_.empty()) {
     BODYLOOM_CHECK(!frame.empty(), "line segments: a frame without pixels");
     image_width_ = frame.width;
@@ -103,7 +103,7 @@ void FrameSamples::Add(const Image& frame) {
   BODYLOOM_CHECK(frame.width == image_width_ && frame.height == image_height_, "line segments: a frame of ",
                  frame.width, "x", frame.height, ", expected ", image_width_, "x", image_height_);
   const int index = next_++;
-  if (index % step_ != 0) return;
+  if (index % step_ != 0) return false;
   if (samples_.size() == 2 * kFewestSamples) {
     for (size_t i = 1; i < kFewestSamples; ++i) samples_[i] = std::move(samples_[2 * i]);
     samples_.resize(kFewestSamples);
@@ -117,11 +117,12 @@ void FrameSamples::Add(const Image& frame) {
   cv::Mat grey(height_, width_, CV_8UC1, sample.grey.data());
   if (scale_ == 1) {
     cv::cvtColor(colours, grey, cv::COLOR_BGR2GRAY);
-    return;
+    return true;
   }
   cv::Mat small;
   cv::resize(colours, small, grey.size(), 0, 0, cv::INTER_AREA);
   cv::cvtColor(small, grey, cv::COLOR_BGR2GRAY);
+  return true;
 }
 
 void CoverBox(double x0, double y0, double x1, double y1, const FrameSamples& samples, CoveredPixels* covered) {

@@ -28,8 +28,9 @@ class FrameSamples {
  public:
   static constexpr int kFewestSamples = 12;
 
-  /// Adds the next frame. Throws std::invalid_argument for an empty one or one of another size.
-  void Add(const Image& frame);
+  /// Adds the next frame; returns true if it was kept. Throws std::invalid_argument for an empty one or one of another
+  /// size.
+  bool Add(const Image& frame);
 
   [[nodiscard]] int image_width() const { return image_width_; }
   [[nodiscard]] int image_height() const { return image_height_; }

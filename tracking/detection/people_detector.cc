@@ -37,16 +37,18 @@ class PeopleDetector::Follower {
     while (int(detectors_.size()) < options.num_threads) detectors_.emplace_back(detectors_.front());
   }
 
-  std::vector<std::vector<DetectedPose>> Detect(std::span<const Image> frames) {
+  std::vector<std::vector<DetectedPose>> Detect(std::span<const Image> frames, std::span<const char> with_mask) {
     BODYLOOM_CHECK(!frames.empty() && frames.size() <= kFramesAtOnce, "the people detector takes 1 to ", kFramesAtOnce,
                    " frames at once, got ", frames.size());
+    BODYLOOM_CHECK(with_mask.empty() || with_mask.size() == frames.size(), "the people detector takes a word on masks ",
+                   "for each of ", frames.size(), " frames, got ", with_mask.size());
     for (const Image& frame : frames) {
       if (width_ == 0) width_ = frame.width, height_ = frame.height;
       BODYLOOM_CHECK(frame.width == width_ && frame.height == height_, "all frames of a clip have one size, ", width_,
                      "x", height_, "; got ", frame.width, "x", frame.height);
     }
     if (IsTimeToSearch()) Search(frames[0]);
-    std::vector<std::vector<DetectedPose>> people = LookAt(frames);
+    std::vector<std::vector<DetectedPose>> people = LookAt(frames, with_mask);
     Follow(people);
     summary_.frames += int(frames.size());
     since_search_ += int(frames.size());
@@ -90,12 +92,14 @@ class PeopleDetector::Follower {
   }
 
   /// Frame × region, side by side. poses[frame][person] for every region, present or not.
-  std::vector<std::vector<DetectedPose>> LookAt(std::span<const Image> frames) {
+  std::vector<std::vector<DetectedPose>> LookAt(std::span<const Image> frames, std::span<const char> with_mask) {
     const Stopwatch watch;
     const int num_regions = int(regions_.size());
     std::vector<std::vector<DetectedPose>> poses(frames.size(), std::vector<DetectedPose>(regions_.size()));
     InParallel(int(frames.size()) * num_regions, [&](int i, PoseDetector& detector) {
-      poses[i / num_regions][i % num_regions] = detector.PoseIn(frames[i / num_regions], regions_[i % num_regions]);
+      const int frame = i / num_regions, region = i % num_regions;
+      poses[frame][region] =
+          detector.PoseIn(frames[frame], regions_[region], with_mask.empty() || with_mask[frame] != 0);
     });
     summary_.regions += int(frames.size()) * num_regions;
     summary_.landmark_seconds += watch.seconds();
@@ -160,8 +164,9 @@ PeopleDetector::~PeopleDetector() = default;
 PeopleDetector::PeopleDetector(PeopleDetector&&) noexcept = default;
 PeopleDetector& PeopleDetector::operator=(PeopleDetector&&) noexcept = default;
 
-std::vector<std::vector<DetectedPose>> PeopleDetector::Detect(std::span<const Image> frames) {
-  return follower_->Detect(frames);
+std::vector<std::vector<DetectedPose>> PeopleDetector::Detect(std::span<const Image> frames,
+                                                              std::span<const char> with_mask) {
+  return follower_->Detect(frames, with_mask);
 }
 
 const PeopleDetectorSummary& PeopleDetector::summary() const { return follower_->summary(); }

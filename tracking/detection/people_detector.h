@@ -23,7 +23,7 @@ namespace bodyloom {
 
 struct PeopleDetectorOptions {
   PoseNetworkSize network = PoseNetworkSize::kHeavy;
-  bool masks = false;         ///< poses include masks
+  bool masks = false;         ///< poses include masks, in the frames where Detect() is asked for them
   int max_people = 0;         ///< those of highest score are kept; 0: everybody
   int search_interval = 30;   ///< frames
   int tile_levels = 2;        ///< finest squares in which people are searched: 1/tile_levels of the longer side
@@ -51,8 +51,9 @@ class PeopleDetector {
   PeopleDetector& operator=(PeopleDetector&&) noexcept;
 
   /// The next frames of the clip, all of one size: a group of 1 to kFramesAtOnce. Returns the people of
-  /// each, those followed longest first. Throws std::invalid_argument for another number or another size.
-  std::vector<std::vector<DetectedPose>> Detect(std::span<const Image> frames);
+  /// each, those followed longest first. with_mask: for each frame whether its poses include masks (if the options say
+  /// so); empty: all. Throws std::invalid_argument for another number or another size.
+  std::vector<std::vector<DetectedPose>> Detect(std::span<const Image> frames, std::span<const char> with_mask = {});
 
   [[nodiscard]] const PeopleDetectorSummary& summary() const;
 

@@ -64,17 +64,20 @@ class PoseDetector::Networks {
     return regions;
   }
 
-  DetectedPose PoseIn(const Image& image, const PoseRegion& region) {
-    const std::vector<GraphTensor> outputs = landmarks_.Run(CropRegion(image, region, kPoseNetworkSize, 1.0F / 255, 0));
+  DetectedPose PoseIn(const Image& image, const PoseRegion& region, bool with_mask) {
+    with_mask = with_mask && with_mask_;
+    const std::vector<GraphTensor> outputs =
+        landmarks_.Run(CropRegion(image, region, kPoseNetworkSize, 1.0F / 255, 0), with_mask ? kOutputs : kOutputs - 1);
     return DecodePose({.landmarks = outputs[0].floats,
                        .presence = outputs[1].floats[0],
-                       .mask = with_mask_ ? std::span<const float>(outputs[4].floats) : std::span<const float>(),
+                       .mask = with_mask ? std::span<const float>(outputs[4].floats) : std::span<const float>(),
                        .heatmaps = outputs[2].floats,
                        .world = outputs[3].floats},
                       region, image.width, image.height);
   }
 
  private:
+  static constexpr int kOutputs = 5;  ///< the mask is the last
   bool with_mask_;
   GraphExecutor people_, landmarks_;
 };
@@ -90,8 +93,8 @@ std::vector<PoseRegion> PoseDetector::FindPeople(const Image& image, const PoseR
   return networks_->FindPeople(image, square, min_score);
 }
 
-DetectedPose PoseDetector::PoseIn(const Image& image, const PoseRegion& region) {
-  return networks_->PoseIn(image, region);
+DetectedPose PoseDetector::PoseIn(const Image& image, const PoseRegion& region, bool with_mask) {
+  return networks_->PoseIn(image, region, with_mask);
 }
 
 }  // namespace bodyloom

@@ -45,6 +45,9 @@ class ClipTerm {
   /// Adds its terms to all frames of the clip's problem, whose starting states are in the camera frame of each. Terms
   /// are summed in the order in which they are added, so a term that gets its observations later is added empty.
   virtual void Observe(SequenceProblem* /*problem*/) {}
+  /// T flags, true for frames with observations of the term, if only some frames have them; empty: all have. The coarse
+  /// frames are chosen so that they have them (FramesAtRate()).
+  [[nodiscard]] virtual std::vector<char> SparseFrames() const { return {}; }
   /// Called after all terms have been added and the states are in the frame of the solve: for a moving camera, the
   /// scene.
   virtual void BeginFit(SequenceProblem* /*problem*/) {}

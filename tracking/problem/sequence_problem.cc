@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "geometry/base/rate_gate.h"
+
 namespace bodyloom {
 
 using Eigen::VectorXd;
@@ -147,15 +149,21 @@ void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames,
   }
 }
 
-std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate) {
+std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate, const std::vector<char>& anchors) {
   std::vector<int> frames;
   const int T = static_cast<int>(problem.states.size());
-  double next = 0;
+  RateGate gate(rate);
+  bool seeks_anchor = false;
   for (int t = 0; t < T; ++t) {
-    const bool ends_shot = t + 1 == T || problem.cut_before[t + 1];
-    if (t > 0 && !problem.cut_before[t] && !ends_shot && problem.timestamps[t] < next - 1e-9) continue;
-    frames.push_back(t);
-    next = problem.timestamps[t] + 1 / rate;
+    const double time = problem.timestamps[t];
+    if (t == 0 || problem.cut_before[t]) {
+      gate = RateGate(rate);
+      seeks_anchor = !anchors.empty();
+    }
+    const bool is_anchor = seeks_anchor && anchors[t] != 0, ends_shot = t + 1 == T || problem.cut_before[t + 1];
+    seeks_anchor = seeks_anchor && !is_anchor;
+    if (is_anchor) gate.Reset(time);
+    if (is_anchor || gate.Passes(time) || ends_shot) frames.push_back(t);
   }
   return frames;
 }

@@ -57,8 +57,9 @@ SequenceProblem SelectFrames(const SequenceProblem& problem, const std::vector<i
 /// change of the selected neighbours, interpolated on SO(3). There is no interpolation across cuts.
 void SpreadFrames(const SequenceProblem& coarse, const std::vector<int>& frames, SequenceProblem* problem);
 
-/// Selects about `rate` frames a second, always with the first and last frame of every shot.
-std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate);
+/// Selects about `rate` frames a second, always with the first and last frame of every shot. `anchors` (T flags, or
+/// empty): the first of a shot is selected, and the others follow from it.
+std::vector<int> FramesAtRate(const SequenceProblem& problem, double rate, const std::vector<char>& anchors = {});
 
 /// σ of each body joint's angular acceleration in a shot, rad/s²: SequenceProblem::smoothness over JointLevers().
 std::vector<double> JointAccelerationSigma(const SequenceProblem& problem, int shot = 0);

@@ -125,7 +125,7 @@ struct PartLabelOptions {
   /// sigma_share, for masks of bare bodies. Found on synthetic dressed people (docs/lab/pose_detector.md).
   double clothes_sigma_share = 0.03;
   double start_kernel = 16, kernel = 4;  ///< c of the robust kernel in σ, in the first and in the last round
-  int rounds = 5;                        ///< solves on the coarse frames; correspondences are updated before each
+  int rounds = 3;                        ///< solves on the coarse frames; correspondences are updated before each
   int max_iterations = 8;                ///< solver iterations of a round
 
   /// For clips whose 2D joints were derived from the labels: these joints only give a start, and the labels are the
@@ -135,6 +135,7 @@ struct PartLabelOptions {
   static PartLabelOptions LabelsAlone() {
     PartLabelOptions options;
     options.silhouette_weight = 10;
+    options.rounds = 5;
     options.part_weight = 30;
     return options;
   }

@@ -87,17 +87,20 @@ class GraphExecutor::Program {
   [[nodiscard]] const std::vector<std::vector<int64_t>>& output_shapes() const { return output_shapes_; }
   [[nodiscard]] size_t num_steps() const { return steps_.size(); }
 
-  std::vector<GraphTensor> Run(std::vector<float> input) const {
+  [[nodiscard]] size_t num_outputs() const { return outputs_.size(); }
+
+  std::vector<GraphTensor> Run(std::vector<float> input, size_t num_outputs) const {
     std::unique_ptr<Workspace> workspace = IdleWorkspace();
     std::vector<GraphTensor>& values = workspace->values;
     values[size_t(input_)] = GraphTensor(input_shape_, std::move(input));
     for (size_t i = 0; i < steps_.size(); ++i) {
+      if (steps_[i].first_output >= num_outputs) continue;
       Execute(steps_[i], &workspace->memories[i], workspace.get());
       for (const int tensor : steps_[i].last) values[size_t(tensor)] = GraphTensor();
     }
     std::vector<GraphTensor> outputs;
-    for (const int output : outputs_) {
-      const GraphTensor& tensor = ValueOf(output, *workspace);
+    for (size_t i = 0; i < num_outputs; ++i) {
+      const GraphTensor& tensor = ValueOf(outputs_[i], *workspace);
       outputs.emplace_back(tensor.shape, tensor.floats.Copy());
     }
     values.assign(values.size(), GraphTensor());
@@ -114,6 +117,7 @@ class GraphExecutor::Program {
     std::optional<OnednnOperator> onednn;  ///< instead of `run`
     bool in_place = false;                 ///< writes to the memory of its input 1
     std::vector<int> last;                 ///< tensors that are not read later
+    size_t first_output = 0;               ///< the first of the wanted outputs that needs it
   };
 
   /// Mutable state of a run.
@@ -224,6 +228,7 @@ class GraphExecutor::Program {
       output_shapes_.push_back(tensor.shape);
     }
     FindLastUses();
+    FindFirstOutputs();
     nodes_.clear();
   }
 
@@ -367,6 +372,21 @@ class GraphExecutor::Program {
     }
   }
 
+  void FindFirstOutputs() {
+    std::vector<size_t> first(constants_.size(), outputs_.size());
+    for (size_t i = outputs_.size(); i-- > 0;) first[size_t(outputs_[i])] = i;
+    for (size_t i = steps_.size(); i-- > 0;) {
+      Step& step = steps_[i];
+      step.first_output = outputs_.size();
+      for (const int output : step.node.outputs) {
+        if (output >= 0) step.first_output = std::min(step.first_output, first[size_t(output)]);
+      }
+      for (const int input : step.node.inputs) {
+        if (input >= 0) first[size_t(input)] = std::min(first[size_t(input)], step.first_output);
+      }
+    }
+  }
+
   std::string name_;
   OperatorSettings settings_;
   std::vector<int64_t> input_shape_;
@@ -409,11 +429,14 @@ const std::vector<std::vector<int64_t>>& GraphExecutor::output_shapes() const { 
 
 size_t GraphExecutor::num_steps() const { return program_->num_steps(); }
 
-std::vector<GraphTensor> GraphExecutor::Run(std::vector<float> input) const {
+std::vector<GraphTensor> GraphExecutor::Run(std::vector<float> input, std::optional<int> num_outputs) const {
   BODYLOOM_CHECK(input.size() == GraphShapeSize(program_->input_shape()), program_->name(), ": an input of ",
                  input.size(), " numbers, expected ", GraphShapeText(program_->input_shape()));
+  const auto all = int(program_->num_outputs());
+  BODYLOOM_CHECK(num_outputs.value_or(all) >= 0 && num_outputs.value_or(all) <= all, program_->name(), ": ",
+                 num_outputs.value_or(all), " outputs, expected at most the ", all, " wanted");
   const OneThread one_thread;
-  return program_->Run(std::move(input));
+  return program_->Run(std::move(input), size_t(num_outputs.value_or(all)));
 }
 
 }  // namespace bodyloom

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "tracking/detection/inference/graph.h"
@@ -36,9 +37,10 @@ class GraphExecutor {
   /// Number of operators that run; fused ones count once.
   [[nodiscard]] size_t num_steps() const;
 
-  /// The wanted outputs in their order, all floats. `input` is in C order; with channels last that is the layout of a
-  /// continuous cv::Mat. Throws std::invalid_argument for another number of values.
-  [[nodiscard]] std::vector<GraphTensor> Run(std::vector<float> input) const;
+  /// The wanted outputs in their order, all floats; with `num_outputs`, only the first so many, without the operators
+  /// that none of them needs. `input` is in C order; with channels last that is the layout of a continuous cv::Mat.
+  /// Throws std::invalid_argument for another number of values, or more outputs than are wanted.
+  [[nodiscard]] std::vector<GraphTensor> Run(std::vector<float> input, std::optional<int> num_outputs = {}) const;
 
  private:
   class Program;

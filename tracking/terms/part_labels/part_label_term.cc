@@ -52,13 +52,12 @@ void ReadPartsSeen(const int32_t* faces, int width, const std::vector<uint8_t>& 
   for (; i < width; ++i) parts[i] = part_of_seen[size_t(faces[i] + 1)];
 }
 
-/// True for one part for the whole person, which includes clothes and hair.
+}  // namespace
+
 bool IsMask(const PartLabelSequence& labels) {
   const auto is_same = [&](uint8_t part) { return part == labels.part_of_chart[1]; };
   return std::all_of(labels.part_of_chart.begin() + 1, labels.part_of_chart.begin() + kUnknown, is_same);
 }
-
-}  // namespace
 
 PartLabelMatches::PartLabelMatches(const PartLabelSequence& labels, int t, std::shared_ptr<const Skinner> skinner,
                                    const PartLabelOptions& options)
@@ -383,13 +382,13 @@ void PartLabelMatches::AddInside(const std::vector<uint8_t>& part_of_face, const
   }
 }
 
-void PartLabelMatches::Weigh() {
+void PartLabelMatches::Weigh(double factor) {
   std::array<double, 2> count = {0, 0};
   for (const Target& target : targets_) ++count[target.is_silhouette];
   for (const ContourPoint& point : contour_) ++count[point.is_silhouette];
   const std::array<double, 2> weight = {
-      options_.part_weight * std::min(1.0, kPartCount / std::max(1.0, count[0])),
-      options_.silhouette_weight * std::min(1.0, kSilhouetteCount / std::max(1.0, count[1]))};
+      factor * options_.part_weight * std::min(1.0, kPartCount / std::max(1.0, count[0])),
+      factor * options_.silhouette_weight * std::min(1.0, kSilhouetteCount / std::max(1.0, count[1]))};
   for (Target& target : targets_) target.weight = weight[target.is_silhouette];
   for (ContourPoint& point : contour_) point.weight = weight[point.is_silhouette];
   for (const Target& target : targets_) num_rows_[target.is_silhouette] += 2;
@@ -397,7 +396,8 @@ void PartLabelMatches::Weigh() {
 }
 
 void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas,
-                                  double log_focal, double person_height_px, double kernel, VisibleSurface* surface) {
+                                  double log_focal, double person_height_px, double kernel, double weight,
+                                  VisibleSurface* surface) {
   targets_.clear();
   contour_.clear();
   kernel_ = kernel;
@@ -415,7 +415,7 @@ void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& s
   AddContour(edges, model, *surface, camera, sigmas);
   AddBoundary(edges, model, *surface, camera, sigmas, kBoundaryReach * person_height_px);
   AddInside(part_of_face, model, *surface, camera, sigma_px);
-  Weigh();
+  Weigh(weight);
 }
 
 void AddMatches(const PartLabelMatches& matches, bool of_silhouette, FrameAccumulator* sums) {

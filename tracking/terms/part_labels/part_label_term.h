@@ -74,8 +74,9 @@ class PartLabelMatches {
                    const PartLabelOptions& options);
 
   /// Starts a round. `person_height_px` sets σ, `kernel` is c in σ.
+  /// `weight` is a factor of the options' weights.
   void Correspond(const FrameLayout& layout, const FrameState& state, const Eigen::VectorXd& betas, double log_focal,
-                  double person_height_px, double kernel, VisibleSurface* surface);
+                  double person_height_px, double kernel, double weight, VisibleSurface* surface);
 
   [[nodiscard]] const std::vector<Target>& targets() const { return targets_; }
   [[nodiscard]] const std::vector<ContourPoint>& contour() const { return contour_; }
@@ -122,7 +123,7 @@ class PartLabelMatches {
                    const Camera& camera, const Sigmas& sigmas, double reach_px);
   void AddInside(const std::vector<uint8_t>& part_of_face, const BodyModel& model, const VisibleSurface& surface,
                  const Camera& camera, double sigma_px);
-  void Weigh();
+  void Weigh(double factor);
   /// Part of each face; unknown for charts that are never labelled.
   [[nodiscard]] std::vector<uint8_t> PartOfFaces(const BodyModel& model) const;
 
@@ -143,6 +144,9 @@ class PartLabelMatches {
   std::array<int, 2> num_rows_ = {0, 0};  ///< of the parts, of the silhouette
   int silhouette_unmatched_ = 0, part_unmatched_ = 0;
 };
+
+/// True for one part for the whole person, which includes clothes and hair.
+bool IsMask(const PartLabelSequence& labels);
 
 /// Adds the residuals of the silhouette, or of the parts.
 void AddMatches(const PartLabelMatches& matches, bool of_silhouette, FrameAccumulator* sums);

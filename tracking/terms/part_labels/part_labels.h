@@ -5,6 +5,9 @@
 /// Correspondences are found at the start of a round and fixed during its solve; the kernel narrows from round to round
 /// (PartLabelOptions::start_kernel to kernel). Runs when the input has labels or masks; parts only for a body with
 /// charts.
+///
+/// Masks beside 2D joints are used in the coarse frames only, as outlines of frames that are closer say the same
+/// (docs/lab/run_speed.md); each counts for all the frames from one to the next.
 #pragma once
 
 #include <memory>
@@ -31,14 +34,23 @@ class PartLabelRounds : public ClipTerm {
   explicit PartLabelRounds(const ClipTermInput& clip);
 
   void Observe(SequenceProblem* problem) override;
+  [[nodiscard]] std::vector<char> SparseFrames() const override;
   [[nodiscard]] Rounds rounds() const override { return {options_.rounds, options_.max_iterations, "fit part labels"}; }
   void StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) override;
 
  private:
+  /// Selects the frames whose labels are used, and their weight.
+  void SelectFrames(const std::vector<int>& coarse_frames);
+
+  const PartLabelSequence& labels_;
   PartLabelOptions options_;
+  std::shared_ptr<const Skinner> skinner_;
   int num_threads_;
   double stature_m_;
-  std::vector<std::unique_ptr<PartLabelMatches>> part_labels_;  ///< T
+  bool is_thinned_;            ///< the coarse frames only
+  std::vector<char> is_used_;  ///< T; empty before the first round
+  double weight_ = 1;
+  std::vector<std::unique_ptr<PartLabelMatches>> part_labels_;  ///< T; null in frames that are not used
 };
 
 }  // namespace bodyloom

@@ -64,7 +64,7 @@ std::unique_ptr<PartLabelMatches> MakeTerm(const Scene& scene, const FrameState&
                                            const PartLabelOptions& options = {}, double kernel = 8) {
   auto term = std::make_unique<PartLabelMatches>(scene.labels, 0, scene.skinner, options);
   VisibleSurface surface;
-  term->Correspond(scene.layout, state, scene.betas, scene.log_focal, kPersonPx, kernel, &surface);
+  term->Correspond(scene.layout, state, scene.betas, scene.log_focal, kPersonPx, kernel, 1, &surface);
   return term;
 }
 
