@@ -19,10 +19,10 @@
 namespace bodyloom {
 namespace {
 
-/// Images drawn in parallel, and the number of them without a frame of the video.
-struct DrawnFrames {
+/// The video's images at some times, null where it has none, and images drawn on them.
+struct FrameGroup {
+  std::vector<std::optional<Image>> backgrounds;
   std::vector<Image> images;
-  int without_video = 0;
 };
 
 /// Writes one image for each of these times; `draw(renderer, index, frame of the video or null)` runs in several
@@ -32,32 +32,43 @@ OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times
                            const Renderer& renderer,
                            const std::function<Image(const Renderer&, int, const Image*)>& draw,
                            const std::function<void(double)>& progress) {
+  constexpr size_t kGroupsAhead = 2;  // of each stage: the time of a frame varies
   const int num_threads = ThreadsFor(0), num_times = int(times.size());
-  const std::vector<Renderer> renderers(size_t(num_threads), renderer);
-  const auto draw_group = [&](int64_t group) {
-    const int first = int(group) * num_threads, count = std::min(num_threads, num_times - first);
-    std::vector<std::optional<Image>> backgrounds(static_cast<size_t>(count));
-    DrawnFrames drawn;
-    for (int i = 0; video != nullptr && i < count; ++i) {
-      if (const Image* background = video->At(times[static_cast<size_t>(first) + static_cast<size_t>(i)]))
-        backgrounds[size_t(i)] = *background;
-      drawn.without_video += backgrounds[size_t(i)] ? 0 : 1;
-    }
-    drawn.images.resize(size_t(count));
-    ParallelFor(count, num_threads, [&](int i) {
-      const std::optional<Image>& background = backgrounds[size_t(i)];
-      drawn.images[size_t(i)] = draw(renderers[size_t(i)], first + i, background ? &*background : nullptr);
-    });
-    return drawn;
-  };
-  OverlaySummary summary;
   const int num_groups = (num_times + num_threads - 1) / num_threads;
-  Prefetcher<DrawnFrames> groups(num_groups, draw_group, 1);
+  const std::vector<Renderer> renderers(size_t(num_threads), renderer);
+  const auto size_of = [&](int64_t group) { return std::min(num_threads, num_times - int(group) * num_threads); };
+  Prefetcher<FrameGroup> read(
+      num_groups,
+      [&](int64_t group) {
+        FrameGroup frames;
+        frames.backgrounds.resize(size_t(size_of(group)));
+        for (size_t i = 0; video != nullptr && i < frames.backgrounds.size(); ++i) {
+          if (const Image* image = video->At(times[size_t(group) * size_t(num_threads) + i])) {
+            frames.backgrounds[i] = *image;
+          }
+        }
+        return frames;
+      },
+      kGroupsAhead);
+  Prefetcher<FrameGroup> drawn(
+      num_groups,
+      [&](int64_t group) {
+        FrameGroup frames = read.Take();
+        frames.images.resize(frames.backgrounds.size());
+        ParallelFor(size_of(group), num_threads, [&](int i) {
+          const std::optional<Image>& background = frames.backgrounds[size_t(i)];
+          frames.images[size_t(i)] =
+              draw(renderers[size_t(i)], int(group) * num_threads + i, background ? &*background : nullptr);
+        });
+        return frames;
+      },
+      kGroupsAhead);
+  OverlaySummary summary;
   for (int group = 0; group < num_groups; ++group) {
-    const DrawnFrames drawn = groups.Take();
-    summary.frames_without_video += drawn.without_video;
-    for (const Image& image : drawn.images) {
-      writer->Write(image);
+    const FrameGroup frames = drawn.Take();
+    for (size_t i = 0; i < frames.images.size(); ++i) {
+      summary.frames_without_video += video != nullptr && !frames.backgrounds[i] ? 1 : 0;
+      writer->Write(frames.images[i]);
       progress(double(++summary.frames) / num_times);
     }
   }

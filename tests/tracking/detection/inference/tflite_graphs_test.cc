@@ -323,6 +323,25 @@ TEST(TfliteGraphs, WhatNoWantedOutputNeedsIsLeftOut) {
   EXPECT_EQ(same[1].floats, expected[1].floats);
 }
 
+TEST(TfliteGraphs, ARunMayLeaveTheLastOutputsOut) {
+  for (const TfliteWriter& writer : SmallNetworks()) {
+    const OperatorGraph model = ModelOf(writer);
+    const std::vector<float> input = InputOf(model), other(input.size(), 0.25F);
+    const GraphExecutor network(model);
+    const std::vector<GraphTensor> expected = network.Run(input);
+    for (int count = 0; count <= int(expected.size()); ++count) {
+      const std::vector<GraphTensor> outputs = network.Run(input, count);
+      ASSERT_EQ(outputs.size(), size_t(count));
+      for (int i = 0; i < count; ++i) EXPECT_EQ(outputs[size_t(i)].floats, expected[size_t(i)].floats);
+      (void)network.Run(other, count);  // the same memory
+      const std::vector<GraphTensor> again = network.Run(input);
+      for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(again[i].floats, expected[i].floats);
+    }
+    EXPECT_THROW((void)network.Run(input, int(expected.size()) + 1), std::invalid_argument);
+    EXPECT_THROW((void)network.Run(input, -1), std::invalid_argument);
+  }
+}
+
 TEST(TfliteGraphs, OutlivesItsModel) {
   auto model = std::make_unique<OperatorGraph>(ModelOf(SmallNetworks()[0]));
   const std::vector<float> input = InputOf(*model);

@@ -185,6 +185,54 @@ TEST(ImageTerms, FramesWithoutLabelsAreCarried) {
   EXPECT_TRUE(result.track.motion.poses.allFinite());
 }
 
+double CostOf(const TrackSequenceResult& result, const std::string& term) {
+  for (const TermCost& cost : result.summary.costs) {
+    if (cost.term == term) return cost.cost;
+  }
+  throw std::runtime_error("no cost of " + term);
+}
+
+TEST(ImageTerms, AMaskBesideJointsIsUsedInTheCoarseFrames) {
+  SynthClipOptions made;
+  made.camera.width = 480;
+  made.camera.height = 360;
+  made.num_threads = 2;
+  const SynthClip clip = MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 24, 30), made);
+  PartLabelSequence masks = LabelsOf(clip);
+  masks.AsMask();
+  TrackSequenceInput input = InputOf(clip);
+  input.initialiser = nullptr;
+  input.keypoints = &clip.keypoints;
+  input.part_labels = &masks;
+  TrackSequenceOptions options;
+  options.num_threads = 2;
+  const TrackSequenceResult with_all = FitClip(input, options);
+  ASSERT_TRUE(with_all.summary.IsUsable()) << with_all.summary.message;
+
+  PartLabelSequence every_second = masks;
+  for (int t = 1; t < 23; t += 2) every_second.frames[size_t(t)] = {};
+  input.part_labels = &every_second;
+  const TrackSequenceResult with_half = FitClip(input, options);
+  EXPECT_EQ(with_half.track.motion.poses, with_all.track.motion.poses);
+  EXPECT_EQ(with_half.track.motion.trans, with_all.track.motion.trans);
+
+  // Masks of other frames are used as well: the coarse frames follow them.
+  PartLabelSequence odd = masks;
+  for (int t = 0; t < 23; t += 2) odd.frames[size_t(t)] = {};
+  input.part_labels = &odd;
+  const TrackSequenceResult with_odd = FitClip(input, options);
+  EXPECT_NEAR(Term(with_odd.summary, "silhouette").observations, Term(with_all.summary, "silhouette").observations,
+              0.15 * Term(with_all.summary, "silhouette").observations);
+
+  // What a mask counts for makes up for the frames between.
+  input.part_labels = &masks;
+  options.coarse_rate = 30;
+  const TrackSequenceResult unthinned = FitClip(input, options);
+  EXPECT_GT(Term(unthinned.summary, "silhouette").observations,
+            1.7 * Term(with_all.summary, "silhouette").observations);
+  EXPECT_NEAR(CostOf(with_all, "silhouette"), CostOf(unthinned, "silhouette"), 0.3 * CostOf(unthinned, "silhouette"));
+}
+
 TEST(ImageTerms, ContradictionsAreNamed) {
   const SynthClip clip = Clip(3, 0);
   const PartLabelSequence good = LabelsOf(clip);
