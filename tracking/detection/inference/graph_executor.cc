@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/base/check.h"
+#include "tracking/detection/inference/channels_last.h"
 #include "tracking/detection/inference/onednn_operator.h"
 #include "tracking/detection/inference/operators.h"
 
@@ -66,12 +67,12 @@ std::vector<GraphNode> NeededNodes(std::vector<GraphNode> nodes, size_t num_tens
 
 class GraphExecutor::Program {
  public:
-  Program(const OperatorGraph& graph, std::vector<int64_t> shape, std::vector<int> wanted)
+  Program(const OperatorGraph& graph, std::vector<int64_t> shape)
       : name_(graph.name),
         settings_{graph.opset, graph.channels_last, nullptr},
         input_shape_(std::move(shape)),
         input_(graph.inputs[0]),
-        outputs_(std::move(wanted)) {
+        outputs_(graph.outputs) {
     for (const OperatorGraph::Tensor& tensor : graph.tensors) {
       constants_.push_back(tensor.constant);
       is_constant_.push_back(tensor.constant.has_numbers());
@@ -420,7 +421,10 @@ GraphExecutor::GraphExecutor(const OperatorGraph& graph, std::vector<int64_t> in
     wanted.push_back(graph.outputs[size_t(place)]);
   }
   const OneThread one_thread;
-  program_ = std::make_shared<const Program>(graph, std::move(input_shape), wanted.empty() ? graph.outputs : wanted);
+  OperatorGraph arranged = graph;
+  arranged.outputs = wanted.empty() ? graph.outputs : wanted;
+  arranged = WithChannelsLast(arranged);
+  program_ = std::make_shared<const Program>(arranged, std::move(input_shape));
 }
 
 const std::vector<int64_t>& GraphExecutor::input_shape() const { return program_->input_shape(); }

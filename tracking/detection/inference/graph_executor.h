@@ -5,6 +5,7 @@
 /// YOLOv8-pose, YOLO11-pose and RTMPose (operator sets 7 to 22) and image U-Nets. Results agree with other runtimes' to
 /// rounding. Optimisations:
 ///   nodes that no wanted output needs  are dropped
+///   images whose channels come first   have them last in between (channels_last.h)
 ///   nodes of constant inputs only      are computed once
 ///   Pad of rows and columns            becomes the padding of the convolutions behind it
 ///   x · sigmoid(x), Clip               are done by the convolution or the sum whose result they alone take

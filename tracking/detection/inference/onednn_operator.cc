@@ -15,6 +15,7 @@ namespace {
 using dnnl::memory;
 
 constexpr auto kFloat = memory::data_type::f32;
+constexpr int kMaxTransposedAxes = 6;
 constexpr auto kForward = dnnl::prop_kind::forward_inference;
 
 const dnnl::engine& ProcessorEngine() {
@@ -213,6 +214,20 @@ void OnednnOperator::MakeResize(const OperatorArguments& arguments) {
       {{DNNL_ARG_SRC, source, 0, {}}, {DNNL_ARG_DST, target, kResult, {}}});
 }
 
+void OnednnOperator::MakeTranspose(const OperatorArguments& arguments) {
+  const std::vector<int64_t>& from = arguments.Input(0).shape;
+  memory::dims strides(from.size(), 1), from_strides = strides, to_strides = strides;
+  for (size_t i = from.size(); i-- > 1;) from_strides[i - 1] = from_strides[i] * from[i];
+  shape_.clear();
+  const std::vector<int64_t> order = TransposedAxes(arguments);
+  for (size_t i = 0; i < order.size(); ++i) {
+    shape_.push_back(from[size_t(order[i])]);
+    strides[i] = from_strides[size_t(order[i])];
+  }
+  for (size_t i = shape_.size(); i-- > 1;) to_strides[i - 1] = to_strides[i] * shape_[i];
+  AddReorder({shape_, kFloat, strides}, 0, {shape_, kFloat, to_strides}, kResult);
+}
+
 void OnednnOperator::MakeSigmoid(const OperatorArguments& arguments) {
   shape_ = arguments.FloatInput(0).shape;
   const memory::desc row = RowDesc(GraphShapeSize(shape_));
@@ -250,6 +265,9 @@ std::optional<OnednnOperator> OnednnOperator::Make(const OperatorArguments& argu
     made.MakePool(arguments);
   } else if (op == "Resize" || op == "Upsample") {
     made.MakeResize(arguments);
+  } else if (op == "Transpose" && arguments.Input(0).has_floats() && arguments.Input(0).size() > 0 &&
+             arguments.Input(0).rank() >= 2 && arguments.Input(0).rank() <= kMaxTransposedAxes) {
+    made.MakeTranspose(arguments);
   } else if (op == "Sigmoid") {
     made.MakeSigmoid(arguments);
   } else if (op == "Add" && arguments.Input(0).has_floats() && arguments.Input(1).has_floats() &&

@@ -82,6 +82,7 @@ class OnednnOperator {
   void MakeConvolution(const OperatorArguments& arguments, const FusedOperators& fused);
   void MakePool(const OperatorArguments& arguments);
   void MakeResize(const OperatorArguments& arguments);
+  void MakeTranspose(const OperatorArguments& arguments);
   /// Elementwise, for any shape.
   void MakeSigmoid(const OperatorArguments& arguments);
   void MakeSum(const OperatorArguments& arguments, const FusedOperators& fused);

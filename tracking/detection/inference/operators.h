@@ -132,6 +132,8 @@ GraphTensor RunConcat(const OperatorArguments& arguments);
 std::vector<GraphTensor> RunSplit(const OperatorArguments& arguments);
 GraphTensor RunSlice(const OperatorArguments& arguments);
 GraphTensor RunTranspose(const OperatorArguments& arguments);
+/// The input's axes in the order of the result's. Throws std::runtime_error for an order that is none of its axes.
+std::vector<int64_t> TransposedAxes(const OperatorArguments& arguments);
 GraphTensor RunGather(const OperatorArguments& arguments);
 /// Writes slices at indices of the first axes.
 GraphTensor RunScatterNd(const OperatorArguments& arguments);

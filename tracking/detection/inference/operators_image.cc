@@ -42,17 +42,13 @@ std::vector<int64_t> FactorsOf(const OperatorArguments& arguments, const std::ve
       factors.push_back(scale >= 1 && scale <= float(kLongest) && scale == std::floor(scale) ? int64_t(scale) : 0);
     }
   }
-  const bool fit = factors.size() == shape.size() && factors[0] == 1 && factors[1] == 1;
-  if (!fit || std::min(factors[2], factors[3]) < 1 || std::max(factors[2], factors[3]) > kLongest) {
-    throw std::runtime_error(
-        Concatenate("another size than a whole multiple of ", GraphShapeText(shape), "'s rows and columns"));
+  const auto is_factor = [](int64_t factor) { return factor >= 1 && factor <= kLongest; };
+  if (factors.size() == shape.size()) {
+    const ImageAxes f(factors, arguments.channels_last());
+    if (f.count == 1 && f.channels == 1 && is_factor(f.rows) && is_factor(f.columns)) return factors;
   }
-  return factors;
-}
-
-const GraphTensor& PlanesInput(const OperatorArguments& arguments) {
-  if (arguments.channels_last()) throw std::runtime_error("an image whose channels are last, expected them first");
-  return ImageInput(arguments);
+  throw std::runtime_error(
+      Concatenate("another size than a whole multiple of ", GraphShapeText(shape), "'s rows and columns"));
 }
 
 }  // namespace
@@ -116,15 +112,26 @@ const GraphTensor& ImageInput(const OperatorArguments& arguments) {
 }
 
 GraphTensor RunGlobalAveragePool(const OperatorArguments& arguments) {
-  const GraphTensor& image = PlanesInput(arguments);
-  const size_t channels = size_t(image.shape[0] * image.shape[1]), pixels = size_t(image.shape[2] * image.shape[3]);
-  std::vector<float> result(channels);
-  for (size_t c = 0; c < channels; ++c) {
-    double sum = 0;
-    for (size_t i = 0; i < pixels; ++i) sum += image.floats[c * pixels + i];
-    result[c] = float(sum / double(pixels));
+  const GraphTensor& image = ImageInput(arguments);
+  const bool last = arguments.channels_last();
+  const ImageAxes axes(image.shape, last);
+  const auto channels = size_t(axes.channels), pixels = size_t(axes.rows * axes.columns);
+  std::vector<double> sums(size_t(axes.count) * channels, 0);
+  const float* value = image.floats.data();
+  if (last) {
+    for (size_t n = 0; n < sums.size(); n += channels) {
+      for (size_t i = 0; i < pixels; ++i) {
+        for (size_t c = 0; c < channels; ++c) sums[n + c] += *value++;
+      }
+    }
+  } else {
+    for (double& sum : sums) {
+      for (size_t i = 0; i < pixels; ++i) sum += *value++;
+    }
   }
-  return {{image.shape[0], image.shape[1], 1, 1}, std::move(result)};
+  std::vector<float> means(sums.size());
+  std::transform(sums.begin(), sums.end(), means.begin(), [&](double sum) { return float(sum / double(pixels)); });
+  return {ImageAxes::Shape(axes.count, axes.channels, 1, 1, last), std::move(means)};
 }
 
 std::vector<int64_t> ResizedShape(const OperatorArguments& arguments) {
@@ -132,8 +139,9 @@ std::vector<int64_t> ResizedShape(const OperatorArguments& arguments) {
   const std::string mode = arguments.node().Text("mode", "nearest");
   if (mode == "linear" && arguments.channels_last()) return arguments.List("sizes", 3);
   if (mode != "nearest") throw std::runtime_error("an interpolation other than nearest");
-  const std::vector<int64_t> factors = FactorsOf(arguments, shape);
-  return {shape[0], shape[1], shape[2] * factors[2], shape[3] * factors[3]};
+  std::vector<int64_t> resized = FactorsOf(arguments, shape);
+  for (size_t i = 0; i < resized.size(); ++i) resized[i] *= shape[i];
+  return resized;
 }
 
 GraphTensor RunPad(const OperatorArguments& arguments) {
@@ -186,8 +194,10 @@ GraphTensor RunDepthToSpace(const OperatorArguments& arguments) {
 }
 
 GraphTensor RunBatchNormalization(const OperatorArguments& arguments) {
-  const GraphTensor& image = PlanesInput(arguments);
-  const auto channels = size_t(image.shape[1]), pixels = size_t(image.shape[2] * image.shape[3]);
+  const GraphTensor& image = ImageInput(arguments);
+  const ImageAxes axes(image.shape, arguments.channels_last());
+  const auto channels = size_t(axes.channels);
+  const size_t together = arguments.channels_last() ? 1 : size_t(axes.rows * axes.columns);
   const float epsilon = arguments.node().Float("epsilon", 1e-5F);
   for (size_t i = 1; i < 5; ++i) {
     if (arguments.Floats(i).size() != channels)
@@ -195,7 +205,7 @@ GraphTensor RunBatchNormalization(const OperatorArguments& arguments) {
   }
   std::vector<float> values = image.floats.Copy();
   for (size_t i = 0; i < values.size(); ++i) {
-    const size_t c = i / pixels % channels;
+    const size_t c = i / together % channels;
     const float scale = arguments.Floats(1)[c] / std::sqrt(arguments.Floats(4)[c] + epsilon);
     values[i] = scale * (values[i] - arguments.Floats(3)[c]) + arguments.Floats(2)[c];
   }

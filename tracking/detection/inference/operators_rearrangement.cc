@@ -212,9 +212,8 @@ GraphTensor RunSlice(const OperatorArguments& arguments) {
   return result;
 }
 
-GraphTensor RunTranspose(const OperatorArguments& arguments) {
-  const GraphTensor& input = arguments.Input(0);
-  const auto rank = size_t(input.rank());
+std::vector<int64_t> TransposedAxes(const OperatorArguments& arguments) {
+  const auto rank = size_t(arguments.Input(0).rank());
   std::vector<int64_t> order;
   for (size_t i = rank; i-- > 0;) order.push_back(int64_t(i));
   order = arguments.node().Integers("perm", order);
@@ -223,6 +222,13 @@ GraphTensor RunTranspose(const OperatorArguments& arguments) {
   for (size_t i = 0; i < sorted.size(); ++i) {
     if (sorted.size() != rank || sorted[i] != int64_t(i)) throw std::runtime_error("an order that is none of the axes");
   }
+  return order;
+}
+
+GraphTensor RunTranspose(const OperatorArguments& arguments) {
+  const GraphTensor& input = arguments.Input(0);
+  const auto rank = size_t(input.rank());
+  const std::vector<int64_t> order = TransposedAxes(arguments);
   std::vector<size_t> stride(rank, 1);
   for (size_t i = rank; i-- > 1;) stride[i - 1] = stride[i] * size_t(input.shape[i]);
   std::vector<int64_t> shape;
