@@ -40,6 +40,7 @@ struct Clip {
       frame.points << Upright(t).transpose(), -0.3 * Upright(t).transpose();
       LiftedLimb limb;
       limb.points.fill(Upright(t));
+      limb.sigma.fill(Eigen::Vector2d::Ones());
       frame.limbs[1] = {limb};
       FrameState& state = states.emplace_back();
       state.rotations.assign(2, Matrix3d::Identity());

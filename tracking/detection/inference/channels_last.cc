@@ -13,7 +13,7 @@ namespace {
 /// Axes of N×C×H×W in the order of N×H×W×C, and back.
 const std::vector<int64_t> kToLast = {0, 2, 3, 1}, kToFirst = {0, 3, 1, 2};
 
-/// Where an axis of N×C×H×W is in N×H×W×C.
+/// For each axis of N×C×H×W, its place in N×H×W×C.
 constexpr std::array<int64_t, 4> kAxisInLast = {0, 3, 1, 2};
 
 const std::set<std::string> kUnary = {"Sigmoid", "HardSigmoid", "HardSwish", "Relu",  "LeakyRelu", "Tanh",    "Sqrt",

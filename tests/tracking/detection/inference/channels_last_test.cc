@@ -132,6 +132,7 @@ TEST(ChannelsLast, AnImageOfComputedOrderIsTurnedBack) {
   AddConvolution("x", 4, 4, "c", &w, 1);
   w.Node("Transpose", {"c"}, {"turned"}, {Writer::Integers("perm", {0, 2, 1, 3})});
   w.Node("Add", {"c", "turned"}, {"sum"}).Node("Concat", {"sum", "c"}, {"both"}, {Writer::Integer("axis", 1)});
+  w.Node("Concat", {"c", "c"}, {"tall"}, {Writer::Integer("axis", 2)}).Output("tall");
   AddConvolution("both", 8, 2, "y", &w, 3).Output("y").Output("sum");
   ExpectSame(w, {1, 4, 4, 4});
 }
