@@ -4,7 +4,7 @@
 ///   builtin_body.npz    data not derived from the cage: the ten shape components on the cage, skinning weights,
 ///                       joint regressor, pose correctives, landmarks and chart coordinates, all of the left half
 /// v_template = S2 S1 cage and shapedirs = S2 S1 cage_shape with S1, S2 the operators of two Catmull–Clark levels
-/// (subdivision.h); the right half is the mirror image. Arrays of the .npz: docs/built_in_body.md.
+/// (subdivision.h); the right half is the mirror image. Arrays of the .npz: assets/body/RECIPE.md.
 #pragma once
 
 #include <string>

@@ -132,7 +132,7 @@ SceneInputs LoadSceneInputs(const SceneRequest& request, const GivenInMemory& gi
     UseVideo(request, is_calibrated, &inputs);
   }
   // The lifter knows how detectors err. Joints read off labels err otherwise, and it makes worse of them than the joint
-  // hypotheses do (docs/benchmarks.md).
+  // hypotheses do (docs/lab/part_labels.md).
   if (request.lifter != "none" && (needs_lifter || !request.lifter.empty())) {
     inputs.lifter = request.lifter.empty() ? BuiltinLifter() : ReadLifterWeights(request.lifter);
   }

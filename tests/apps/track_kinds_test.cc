@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table "verb × kind of track" of docs/command.md, made by trying each: a verb either takes a kind of track or
+// The table of docs/lab/track_kinds.md, made by trying each verb with each kind of track: it either takes the track or
 // refuses it in one line.
 #include <gtest/gtest.h>
 
@@ -139,8 +139,8 @@ TEST(TrackKinds, TheTableOfTheManualIsTrue) {
     }
     table += Row(cells);
   }
-  EXPECT_NE(ReadFileBytes(SourceDir() + "/docs/command.md").find(table), std::string::npos)
-      << "docs/command.md lacks this table:\n"
+  EXPECT_NE(ReadFileBytes(SourceDir() + "/docs/lab/track_kinds.md").find(table), std::string::npos)
+      << "docs/lab/track_kinds.md lacks this table:\n"
       << table;
 }
 

@@ -68,8 +68,8 @@ TEST_P(Rotations, AnAngleBeyondATurnIsTheSameStart) {
   }
 }
 
-// Dense keypoints see which way the person faces, so the start need not. Beyond these, see the convergence table of
-// docs/stability.md: 120° about the viewing axis ends in another basin.
+// Dense keypoints see which way the person faces, so the start need not. Beyond these, see docs/lab/convergence.md:
+// 120° about the viewing axis ends in another basin.
 TEST_P(Rotations, StartsTurnedFarOffTheTruthComeBackWithDenseKeypoints) {
   const SynthClip clip = DemoClip(BuiltinBody(), 8, 15, 150);
   struct Start {

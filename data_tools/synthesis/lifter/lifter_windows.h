@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Random training windows for the lifter: recorded motion with augmentation, a random camera and simulated detections.
-/// Contents and rationale: docs/lifter_training_data.md.
+/// Contents and rationale: docs/lab/lifter.md, "Training data".
 #pragma once
 
 #include <array>
