@@ -36,17 +36,20 @@ void AddPlaybackOptions(CLI::App& app, std::optional<int>* turn_deg, double* cap
 
 void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group) {
   app.add_option("--detector", detector->blazepose.network,
-                 "size of BlazePose's network: lite, full or heavy (default), each slower and surer")
+                 "size of BlazePose's network: lite, full or heavy, each slower and surer (default: " +
+                     ToText(detector->blazepose.network) + ")")
       ->transform(CLI::CheckedTransformer(NetworksByName(), CLI::ignore_case).description(""))
       ->group(group)
       ->type_name("SIZE");
-  app.add_option(
-         "--detect-rate", *detect_rate,
-         "while everybody moves slowly, detect only so many frames a second and interpolate between them, without "
-         "masks (default: every frame)")
-      ->check(CLI::PositiveNumber)
-      ->group(group)
-      ->type_name("HZ");
+  if (detect_rate != nullptr) {
+    app.add_option(
+           "--detect-rate", *detect_rate,
+           "while everybody moves slowly, detect only so many frames a second and interpolate between them, without "
+           "masks (default: every frame)")
+        ->check(CLI::PositiveNumber)
+        ->group(group)
+        ->type_name("HZ");
+  }
   app.add_option("--search-interval", detector->blazepose.search_interval,
                  "frames between BlazePose's searches for new people")
       ->group(group)

@@ -16,8 +16,8 @@ namespace bodyloom {
 /// Adds --rotate and --captured-fps, in this group of the help. `turn_deg`: none for auto.
 void AddPlaybackOptions(CLI::App& app, std::optional<int>* turn_deg, double* captured_fps, const std::string& group);
 
-/// Adds --detector, --detect-rate, --search-interval, --tiles, --models, --pose-model and --box-model, in this group of
-/// the help.
+/// Adds --detector, --detect-rate (not where `detect_rate` is null), --search-interval, --tiles, --models, --pose-model
+/// and --box-model, in this group of the help.
 void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group);
 
 /// Adds --hands, in this group of the help; without it the choice stays as it is.

@@ -25,6 +25,7 @@ int Run(int argc, char** argv) {
   app.footer(std::string(kExamples) + kExitCodeHelp);
   Action action;
   AddRunVerb(app, &action);
+  AddLiveVerb(app, &action);
   AddBatchVerb(app, &action);
   AddDetectVerb(app, &action, {argv + 1, argv + argc});
   AddTrackVerb(app, &action);

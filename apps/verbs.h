@@ -22,6 +22,7 @@ struct FrameMetric;
 using Action = std::function<void()>;
 
 void AddRunVerb(CLI::App& app, Action* action);
+void AddLiveVerb(CLI::App& app, Action* action);
 void AddBatchVerb(CLI::App& app, Action* action);
 /// Dense keypoints need LibTorch: `dense` makes their detector from --dense-model, --device and --dense-colours (""
 /// when not given). Without `dense` the command is handed over to the executable that has it, with `arguments`, those

@@ -29,7 +29,8 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/bodyloomConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/bodyloomConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/bodyloomConfig.cmake ${PROJECT_BINARY_DIR}/bodyloomConfigVersion.cmake
         ${CMAKE_CURRENT_LIST_DIR}/FindMATIO.cmake ${CMAKE_CURRENT_LIST_DIR}/FindLibav.cmake
-        ${CMAKE_CURRENT_LIST_DIR}/FindOneDNN.cmake
+        ${CMAKE_CURRENT_LIST_DIR}/FindOneDNN.cmake ${CMAKE_CURRENT_LIST_DIR}/FindLiblo.cmake
+        ${CMAKE_CURRENT_LIST_DIR}/FindHttplib.cmake
         DESTINATION ${bodyloom_config_dir} COMPONENT development)
 
 # Which headers are public is looked up when they are installed: it follows from what they include then.

@@ -33,6 +33,7 @@ endforeach()
 
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME bodyloom)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS libavdevice59)  # loaded when a camera is opened: shlibdeps does not see it
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "bodyloom-neural, bodyloom-cgal")
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "Follows a person through a single-camera video with a parametric body.")
 
@@ -62,7 +63,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbodyloom-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libavcodec-dev, libavfilter-dev, libavformat-dev, libavutil-dev, libceres-dev, libdnnl-dev, libeigen3-dev, libhwy-dev, libmatio-dev, libopencv-dev, \
+    "libavcodec-dev, libavdevice-dev, libavfilter-dev, libavformat-dev, libavutil-dev, libceres-dev, libcpp-httplib-dev, libdnnl-dev, libeigen3-dev, libhwy-dev, liblo-dev, \
+libmatio-dev, libopencv-dev, \
 libopenmesh-dev, libswscale-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS libtorch-dev)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Libraries and headers of Bodyloom, for find_package(bodyloom).")

@@ -9,7 +9,8 @@
 //          and of further cameras, which stand still, views [{world_from_camera, K, image_size}]
 //   glb    the scene as base64 of a .glb
 //   video  base64 of an .mp4 with one image per frame at a constant fps, or empty; video-1, video-2 ...: of the views
-// and elements with the ids used below. A fragment "#frame=30&view=side&texture=off" opens it there; "#measure" shows the frame rate.
+// and elements with the ids used below. A page with `live` in its clip (pipelines/live/live_page.h) has no frames: it fetches body.glb
+// and takes poses from the events of its server. A fragment "#frame=30&view=side&texture=off" opens it there; "#measure" shows the frame rate.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
@@ -67,16 +68,22 @@ class Stage {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.draw());
     new ResizeObserver(() => this.resize()).observe(holder);
+    this.shown = []; // what load() and those it calls put into the scene
   }
 
-  async load() {
+  async load(glb) {
     const loader = new GLTFLoader();
     // Textures by image elements: a browser that is driven without a screen waits for those, for image bitmaps it does not.
     loader.register((parser) => {
       parser.textureLoader = new THREE.TextureLoader(parser.options.manager);
       return { name: 'image_elements' };
     });
-    const gltf = await loader.parseAsync(bytesOf('glb').buffer, '');
+    const gltf = await loader.parseAsync(glb, '');
+    for (const old of this.shown) {
+      this.scene.remove(old);
+      old.traverse((node) => { node.geometry?.dispose(); node.material?.dispose(); });
+    }
+    this.shown = [gltf.scene];
     this.scene.add(gltf.scene);
     this.bodies = [];
     this.extra = [];
@@ -90,7 +97,7 @@ class Stage {
     });
     this.mixer = new THREE.AnimationMixer(gltf.scene);
     this.duration = 0;
-    for (const animation of gltf.animations) {
+    for (const animation of clip.live ? [] : gltf.animations) {
       this.mixer.clipAction(animation).play();
       this.duration = Math.max(this.duration, animation.duration);
     }
@@ -99,6 +106,7 @@ class Stage {
     this.addFrusta();
     this.holdCentre(0);
     this.view(wishes.get('view') || 'front');
+    return gltf.scene;
   }
 
   addJoints(root, person, index) {
@@ -111,6 +119,7 @@ class Stage {
       const sphere = new THREE.Mesh(ball, material);
       sphere.renderOrder = 2;
       sphere.frustumCulled = false;
+      this.shown.push(sphere);
       this.scene.add(sphere);
       return { bone, sphere, joint: person.joints.indexOf(bone.userData.name || bone.name), person: index };
     });
@@ -129,6 +138,7 @@ class Stage {
       const frustum = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(lines),
                                              new THREE.LineBasicMaterial({ color: 0x3366cc }));
       frustum.matrixAutoUpdate = false;
+      this.shown.push(frustum);
       this.scene.add(frustum);
       return { ...camera, frustum, fieldOfView: 2 * Math.atan(height / (2 * fy)) * 180 / Math.PI };
     });
@@ -186,7 +196,7 @@ class Stage {
   }
 
   pose(second) {
-    this.mixer.setTime(Math.min(Math.max(second, 0), Math.max(this.duration - 1e-4, 0)));
+    if (!clip.live) this.mixer.setTime(Math.min(Math.max(second, 0), Math.max(this.duration - 1e-4, 0)));
     this.scene.updateMatrixWorld(true);
   }
 
@@ -390,7 +400,7 @@ class AnglePlots {
 
 async function main() {
   const stage = new Stage(element('stage'));
-  await stage.load();
+  await stage.load(bytesOf('glb').buffer);
   stage.resize();
   const videos = cameras.filter(({ end }) => element(`video${end}`).textContent.trim() !== '')
     .map(({ end }) => ({ player: element(`picture${end}`), bytes: `video${end}` }));
@@ -471,9 +481,7 @@ async function main() {
       link.href = URL.createObjectURL(new Blob([bytesOf(link.dataset.blob)], { type: link.type }));
     });
   }
-  element('scale').style.background =
-    `linear-gradient(to right, ${[0, 0.25, 0.5, 0.75, 1].map((x) => `#${sigmaColour(x * SIGMA_LIMIT_MM).getHexString()}`).join(', ')})`;
-  element('scale-end').textContent = `${SIGMA_LIMIT_MM} mm`;
+  showSigmaScale();
 
   if (wishes.get('texture') === 'off') element('show-texture').checked = false;
   const first = Number(wishes.get('frame') || 0);
@@ -491,7 +499,127 @@ async function main() {
   document.body.dataset.ready = 'yes';
 }
 
-main().catch((error) => {
+// The body as it is tracked: each event holds the newest pose (pipelines/live/live_state.h), and the number of the shape, for which the
+// body is fetched anew.
+class LiveBody {
+  constructor(stage) {
+    this.stage = stage;
+    this.shape = 0;
+    this.arrivals = [];
+    const events = new EventSource('events');
+    events.onmessage = (message) => { this.newest = message.data; };
+    events.onerror = () => { element('place').textContent = 'the connection is lost, looking for it'; };
+    const next = async () => {
+      const data = this.newest;
+      this.newest = null;
+      try {
+        if (data) await this.take(JSON.parse(data));
+      } catch (error) {
+        console.error(error);
+        element('place').textContent = `This browser cannot show the body: ${error.message}`;
+      }
+      requestAnimationFrame(next);
+    };
+    requestAnimationFrame(next);
+  }
+
+  async take({ shape, pose_mean: mean, state }) {
+    const now = performance.now();
+    this.arrivals = [...this.arrivals.filter((then) => now - then < 2000), now];
+    const isFirst = this.shape === 0;
+    if (state.poses && shape !== this.shape) await this.fetchBody(shape, state);
+    if (this.bones) this.show(state, mean);
+    if (isFirst && state.poses) this.centre();
+    const rate = this.arrivals.length > 1 ? 1000 * (this.arrivals.length - 1) / (now - this.arrivals[0]) : 0;
+    element('place').textContent = `${state.status}, ${state.seconds.toFixed(1)} s; ${state.delay_ms.toFixed(0)} ms after it was seen; ` +
+      `drawn ${rate.toFixed(0)} times a second; ${state.dropped} frames passed over; world by: ${state.world.source}`;
+    if (this.bones) document.body.dataset.ready = 'yes';
+  }
+
+  async fetchBody(shape, state) {
+    const answer = await fetch('body.glb');
+    if (!answer.ok) return;
+    const { camera, world } = state;
+    clip.K = [[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]];
+    clip.image_size = [camera.width, camera.height];
+    Object.assign(cameras[0], { K: clip.K, image_size: clip.image_size, world_from_camera: rowsOf(world) });
+    const stage = this.stage, place = stage.camera.position.clone(), target = stage.controls.target.clone();
+    this.root = await stage.load(await answer.arrayBuffer());
+    const { skeleton } = stage.bodies[0].mesh;
+    this.bones = skeleton.bones;
+    clip.people[0].joints = this.bones.map((bone) => bone.userData.name || bone.name);
+    for (const joint of stage.people[0]) joint.joint = this.bones.indexOf(joint.bone);
+    if (this.shape !== 0) { // as it was seen before
+      stage.camera.position.copy(place);
+      stage.controls.target.copy(target);
+      stage.controls.update();
+    }
+    this.shape = shape;
+  }
+
+  show({ poses, joints, joint_sigma: sigma, world }, mean) {
+    const rows = rowsOf(world);
+    const worldFromCamera = new THREE.Matrix4().set(...rows[0], ...rows[1], ...rows[2], 0, 0, 0, 1);
+    // Whoever is lost is a point, as in a clip's scene.
+    this.bones[0].parent.scale.setScalar(poses ? 1 : 1e-3);
+    if (poses) {
+      const turn = new THREE.Vector3();
+      this.bones.forEach((bone, j) => {
+        turn.set(...[0, 1, 2].map((k) => poses[3 * j + k] + (mean ? mean[3 * j + k] : 0)));
+        const angle = turn.length();
+        bone.quaternion.setFromAxisAngle(angle > 0 ? turn.divideScalar(angle) : turn.set(1, 0, 0), angle);
+      });
+      this.bones[0].quaternion.premultiply(new THREE.Quaternion().setFromRotationMatrix(worldFromCamera));
+      this.bones[0].position.set(...joints[0]).applyMatrix4(worldFromCamera);
+    }
+    for (const camera of this.stage.cameras) camera.world_from_camera = rows;
+    clip.people[0].sigma_mm[0] = sigma && sigma.map((metres) => (metres === null ? null : 1000 * metres));
+    this.stage.show(0);
+    if (poses) this.follow();
+  }
+
+  // The view goes along with whoever walks away from its middle.
+  follow() {
+    const { stage } = this;
+    const away = this.bones[0].getWorldPosition(new THREE.Vector3()).sub(stage.centre);
+    if (away.length() < 0.5) return;
+    away.multiplyScalar(0.1);
+    stage.centre.add(away);
+    stage.camera.position.add(away);
+    stage.controls.target.add(away);
+    stage.controls.update();
+  }
+
+  centre(name) {
+    this.stage.holdCentre(0);
+    this.stage.show(0);
+    this.stage.view(name || wishes.get('view') || 'front');
+  }
+}
+
+const rowsOf = ({ rotation, translation }) => rotation.map((row, i) => [...row, translation[i]]);
+
+function showSigmaScale() {
+  element('scale').style.background =
+    `linear-gradient(to right, ${[0, 0.25, 0.5, 0.75, 1].map((x) => `#${sigmaColour(x * SIGMA_LIMIT_MM).getHexString()}`).join(', ')})`;
+  element('scale-end').textContent = `${SIGMA_LIMIT_MM} mm`;
+}
+
+async function live() {
+  const stage = new Stage(element('stage'));
+  stage.resize();
+  const body = new LiveBody(stage);
+  for (const name of ['front', 'side', 'back', 'top', 'camera']) {
+    element(`view-${name}`).addEventListener('click', () => { if (body.bones) body.centre(name); });
+  }
+  for (const id of ['show-body', 'show-joints', 'show-camera']) {
+    element(id).addEventListener('change', () => { if (body.bones) stage.show(0); });
+  }
+  if (wishes.has('joints')) element('show-joints').checked = true;
+  showSigmaScale();
+}
+
+(clip.live ? live : main)().catch((error) => {
   console.error(error);
   element('place').textContent = `This browser cannot show the scene: ${error.message}`;
 });

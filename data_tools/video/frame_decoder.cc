@@ -8,6 +8,7 @@ extern "C" {
 
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "data_tools/video/image_header.h"
 #include "geometry/base/check.h"
@@ -15,7 +16,7 @@ extern "C" {
 namespace bodyloom {
 namespace {
 
-LibavPtr<AVCodecContext> OpenDecoder(const VideoPackets& packets) {
+LibavPtr<AVCodecContext> OpenDecoder(const VideoPackets& packets, bool low_delay) {
   const AVStream& stream = packets.stream();
   const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
   if (decoder == nullptr) {
@@ -27,7 +28,7 @@ LibavPtr<AVCodecContext> OpenDecoder(const VideoPackets& packets) {
   int result = avcodec_parameters_to_context(codec.get(), stream.codecpar);
   codec->pkt_timebase = stream.time_base;
   codec->max_pixels = kMaxImagePixels;
-  codec->thread_count = 0;
+  codec->thread_count = low_delay ? 1 : 0;
   codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
   if (result >= 0) result = avcodec_open2(codec.get(), decoder, nullptr);
   if (result < 0) {
@@ -44,9 +45,11 @@ FrameClock ClockOf(const VideoPackets& packets) {
   return {tick.num, tick.den, 1 / (packets.fps() > 0 ? packets.fps() : 25)};
 }
 
-FrameDecoder::FrameDecoder(const std::string& path)
-    : packets_(path),
-      codec_(OpenDecoder(packets_)),
+FrameDecoder::FrameDecoder(const std::string& path) : FrameDecoder(VideoPackets(path), false) {}
+
+FrameDecoder::FrameDecoder(VideoPackets packets, bool low_delay)
+    : packets_(std::move(packets)),
+      codec_(OpenDecoder(packets_, low_delay)),
       frame_(NewLibavFrame()),
       packet_(NewLibavPacket()),
       clock_(ClockOf(packets_)) {}
@@ -54,6 +57,7 @@ FrameDecoder::FrameDecoder(const std::string& path)
 bool FrameDecoder::Feed() {
   if (draining_) return false;
   draining_ = !packets_.Next(packet_.get());
+  packet_arrived_ = std::chrono::steady_clock::now();
   // Without a packet it returns delayed frames. A result other than 0 is a frame that it could not decode.
   if (avcodec_send_packet(codec_.get(), draining_ ? nullptr : packet_.get()) < 0) ++lost_;
   return true;

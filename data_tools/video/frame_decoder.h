@@ -2,6 +2,7 @@
 /// Decodes the frames of a video file in presentation order, with their times.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -33,12 +34,13 @@ class FrameClock {
   bool has_last_ = false;
 };
 
-/// Several frames are decoded at once, on as many threads as there are processors. Interlaced frames become whole
-/// pictures (Deinterlacer).
+/// Several frames are decoded at once, on as many threads as there are processors; with `low_delay` one after the
+/// other, so that each comes as soon as its packets are there. Interlaced frames become whole pictures (Deinterlacer).
 class FrameDecoder {
  public:
   /// Throws as VideoPackets, and when there is no decoder.
   explicit FrameDecoder(const std::string& path);
+  FrameDecoder(VideoPackets packets, bool low_delay);
 
   /// Decodes the next decodable frame; false at the end.
   bool Next();
@@ -46,6 +48,8 @@ class FrameDecoder {
   [[nodiscard]] const AVFrame& frame() const { return *frame_; }
   /// Presentation time of that frame, seconds after the first one.
   [[nodiscard]] double time() const { return time_s_; }
+  /// The moment at which the last packet was there, before it was decoded.
+  [[nodiscard]] std::chrono::steady_clock::time_point packet_arrived() const { return packet_arrived_; }
   /// Number of frames so far that could not be decoded, and of decoded ones with damaged parts.
   [[nodiscard]] int num_lost() const { return lost_; }
   [[nodiscard]] int num_damaged() const { return damaged_; }
@@ -66,6 +70,7 @@ class FrameDecoder {
   std::optional<Deinterlacer> deinterlacer_;
   std::deque<double> times_in_deinterlacer_;
   double time_s_ = 0;
+  std::chrono::steady_clock::time_point packet_arrived_;
   int lost_ = 0, damaged_ = 0;
   bool draining_ = false, deinterlacer_draining_ = false;
 };

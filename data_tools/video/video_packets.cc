@@ -3,8 +3,11 @@
 
 extern "C" {
 #include <libavcodec/avcodec.h>
+#include <libavdevice/version_major.h>
 #include <libavformat/avformat.h>
 }
+
+#include <dlfcn.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,6 +55,69 @@ LibavPtr<AVFormatContext> Open(const std::string& path) {
                                        : ": not a video that ffmpeg can read (" + LibavReason(result) + ")"));
 }
 
+/// "rtsp://user:***@host/…" of "rtsp://user:secret@host/…".
+std::string WithoutPassword(const std::string& address) {
+  const size_t scheme = address.find("://");
+  if (scheme == std::string::npos) return address;
+  const size_t begin = scheme + 3, at = address.substr(0, address.find('/', begin)).rfind('@');
+  const size_t colon = address.find(':', begin);
+  if (at == std::string::npos || colon == std::string::npos || colon > at) return address;
+  return address.substr(0, colon + 1) + "***" + address.substr(at);
+}
+
+/// The camera's kind of input. libavdevice is loaded when a camera is opened: it brings some sixty libraries, which
+/// would slow the start of every program that reads a video.
+const AVInputFormat* DeviceFormat(const std::string& device, const std::string& path) {
+  const std::string file = "libavdevice.so." + std::to_string(LIBAVDEVICE_VERSION_MAJOR);
+  void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    throw std::runtime_error(path + ": a camera needs " + file + " (Debian: libavdevice" +
+                             std::to_string(LIBAVDEVICE_VERSION_MAJOR) + "), which is not installed");
+  }
+  const auto register_all = reinterpret_cast<void (*)()>(dlsym(library, "avdevice_register_all"));
+  if (register_all == nullptr) throw std::runtime_error(path + ": " + file + " is not ffmpeg's");
+  register_all();  // the library stays loaded, as ffmpeg now points into it
+  const AVInputFormat* format = av_find_input_format(device.c_str());
+  if (format == nullptr) throw std::runtime_error(path + ": this ffmpeg reads no cameras of the kind " + device);
+  return format;
+}
+
+LibavPtr<AVFormatContext> OpenLive(const std::string& address, const std::string& path, const LiveInput& input,
+                                   const std::function<bool()>* stop) {
+  AVFormatContext* context = avformat_alloc_context();
+  if (context == nullptr) throw std::bad_alloc();
+  context->interrupt_callback.opaque = const_cast<std::function<bool()>*>(stop);  // only called
+  context->interrupt_callback.callback = [](void* opaque) {
+    const auto& poll = *static_cast<const std::function<bool()>*>(opaque);
+    return poll && poll() ? 1 : 0;
+  };
+  context->max_analyze_duration = AV_TIME_BASE;
+  AVDictionary* options = nullptr;
+  const AVInputFormat* format = nullptr;
+  if (input.device.empty()) {
+    avformat_network_init();
+    av_dict_set(&options, "protocol_whitelist", "rtsp,rtp,srtp,rtmp,rtmps,udp,tcp,tls,http,https,httpproxy,srt,crypto",
+                0);
+    av_dict_set(&options, "rtsp_flags", "prefer_tcp", 0);
+  } else {
+    try {
+      format = DeviceFormat(input.device, path);
+    } catch (...) {
+      avformat_free_context(context);
+      throw;
+    }
+    const std::string size = std::to_string(input.width) + "x" + std::to_string(input.height);
+    if (input.width > 0 && input.height > 0) av_dict_set(&options, "video_size", size.c_str(), 0);
+    if (input.fps > 0) av_dict_set(&options, "framerate", std::to_string(input.fps).c_str(), 0);
+  }
+  const int result = avformat_open_input(&context, address.c_str(), format, &options);  // frees the context on failure
+  av_dict_free(&options);
+  if (result >= 0) return LibavPtr<AVFormatContext>(context);
+  throw std::runtime_error(
+      path + (input.device.empty() ? ": not a stream that can be read (" : ": not a camera that can be read (") +
+      LibavReason(result) + ")");
+}
+
 void RequireModestSize(const AVStream& stream, const std::string& path) {
   const int64_t width = stream.codecpar->width, height = stream.codecpar->height;
   if (stream.codecpar->codec_type != AVMEDIA_TYPE_VIDEO || width * height <= kMaxImagePixels) return;
@@ -89,14 +155,25 @@ bool IsMov(const AVFormatContext& context) { return std::string_view(context.ifo
 
 }  // namespace
 
+VideoPackets::VideoPackets(const std::string& address, const LiveInput& input)
+    : path_(WithoutPassword(address)), stop_(std::make_unique<const std::function<bool()>>(input.stop)) {
+  QuietCodecs();
+  context_ = OpenLive(address, path_, input, stop_.get());
+  FindStream();
+}
+
+void VideoPackets::FindStream() {
+  for (unsigned i = 0; i < context_->nb_streams; ++i) RequireModestSize(*context_->streams[i], path_);
+  Probe(context_.get());
+  stream_ = ImageStream(context_.get(), path_);
+  RequireModestSize(*stream_, path_);
+}
+
 VideoPackets::VideoPackets(const std::string& path) : path_(path) {
   RequireFile(path);
   QuietCodecs();
   context_ = Open(path);
-  for (unsigned i = 0; i < context_->nb_streams; ++i) RequireModestSize(*context_->streams[i], path);
-  Probe(context_.get());
-  stream_ = ImageStream(context_.get(), path);
-  RequireModestSize(*stream_, path);
+  FindStream();
   promised_ = stream_->nb_frames;
   if (promised_ > 0 && IsMov(*context_)) {
     // The index states which samples the edit list hides.

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "data_tools/video/libav_handles.h"
@@ -11,11 +13,22 @@ struct AVStream;
 
 namespace bodyloom {
 
+/// A camera, or a stream of a network.
+struct LiveInput {
+  std::string device;          ///< libavdevice's name of the kind of camera ("v4l2"); empty: a stream
+  int width = 0, height = 0;   ///< asked of a camera; 0: its own choice
+  double fps = 0;              ///< likewise
+  std::function<bool()> stop;  ///< polled while waiting for the input, from this thread: true gives up
+};
+
 class VideoPackets {
  public:
   /// Opens the best video stream of a file. Throws std::runtime_error naming the path when it is missing, empty, not a
   /// video (text, sound alone, a cover image), or has frames of more than kMaxImagePixels.
   explicit VideoPackets(const std::string& path);
+  /// Opens a camera or stream. A stream is read by network protocols alone, so that no playlist reaches for a file.
+  /// Throws std::runtime_error naming the address, without a password that it may hold.
+  VideoPackets(const std::string& address, const LiveInput& input);
 
   /// The next packet of the stream that holds data; false at the end. A truncated last packet is left out.
   bool Next(AVPacket* packet);
@@ -36,8 +49,11 @@ class VideoPackets {
 
  private:
   void NoteEnd(const AVPacket& packet);
+  /// Finds the video stream of the opened input.
+  void FindStream();
 
   std::string path_;
+  std::unique_ptr<const std::function<bool()>> stop_;  ///< outlives the context, which polls it
   LibavPtr<AVFormatContext> context_;
   AVStream* stream_ = nullptr;
   int64_t promised_ = 0, delivered_ = 0;

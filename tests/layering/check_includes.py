@@ -68,6 +68,8 @@ THIRD_PARTY = [
     (r"nlohmann/(?!json_fwd)", {"data_tools", "data_tools/synthesis", "data_tools/evaluation", "pipelines",
                                 "pipelines/neural"} | TEST_CODE, False),
     (r"(matio|zlib)\.h", {"data_tools"} | TEST_CODE, False),
+    (r"lo/lo", {"data_tools"}, False),
+    (r"httplib\.h", {"pipelines"} | TEST_CODE, False),
     (r"toml\+\+/", {"data_tools"}, False),
     (r"lib(av\w+|swscale|swresample)/(?!(sha|mem)\.h)", {"data_tools/video"} | TEST_CODE, False),
     (r"libavutil/(sha|mem)\.h", {"data_tools"} | TEST_CODE, False),

@@ -149,7 +149,8 @@ std::vector<LiftedFrame> LiftKeypoints(const KeypointSequence& keypoints, const 
     const LifterInput input = MakeLifterInput(SamplePhase(rays, phase));
     const RowMatrixXf features =
         Eigen::Map<const RowMatrixXf>(input.features.data(), phase.num_samples(), kLifterInputs);
-    const int last = options.last_samples;
+    // Of a slow clip a sample is a frame and those interpolated behind it.
+    const int last = options.last_samples > 0 ? (options.last_samples - 1) * phase.between + 1 : 0;
     const RowMatrixXf plain = RunLifter(weights, features, last);
     const RowMatrixXf mirrored = options.mirrored ? RunLifter(weights, MirrorFeatures(features), last) : RowMatrixXf();
     const int skipped = phase.num_samples() - static_cast<int>(plain.rows());

@@ -154,6 +154,7 @@ LiveReading LiveLifter::Ask(const LiveSetup& setup, LiveWindow* window) {
     LiveRecord& record = window->RecordAt(slot);
     record.lifted =
         MakeLiftedPose(frame, setup.lifted_landmarks, reading.metres, setup.options.solve.lifter_min_sigma_m);
+    record.standing = {frame.up, frame.up_sigma, frame.contact};
     LiftedPoseTerm& term = lag.problem().frames[slot].Get<LiftedPoseTerm>();
     term.pose = &record.lifted;
     term.weight = setup.options.solve.lifter_weight;

@@ -71,6 +71,13 @@ struct LiveFrame {
   /// then; NaN when lost, or without TrackSequenceOptions::estimate_uncertainty.
   Eigen::VectorXd joint_sigma;
   double root_sigma = std::numeric_limits<double>::quiet_NaN();  ///< that of this middle's own position
+  /// The lifter's reading of the frame on its vertical and its standing feet (LiftedFrame).
+  struct Standing {
+    Eigen::Vector3d up = Eigen::Vector3d(0, -1, 0);
+    double up_sigma = 1;
+    Eigen::Vector2d contact = Eigen::Vector2d::Zero();
+  };
+  std::optional<Standing> standing;  ///< none where the lifter did not run
 };
 
 }  // namespace bodyloom

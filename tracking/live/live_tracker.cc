@@ -131,6 +131,7 @@ std::vector<LiveFrame> LiveTracker::Impl::ReleaseFrames(const std::deque<LiveRec
     out.timestamp = record->timestamp;
     out.cut_before = record->cut_before;
     out.status = record->status;
+    out.standing = record->standing;
     out.joint_sigma.setConstant(num_joints, kNaN);
     const int slot = record->in_window ? window.SlotOf(*record) : -1;
     if (slot >= 0) out.state = problem.states[slot];

@@ -85,6 +85,7 @@ void LiveWindow::Release(int count) {
     it->held.reset();
     it->shot = shot_;
     it->lifted = LiftedPose();  // predicted for the previous person
+    it->standing.reset();
     if (!it->in_window) continue;
     const int slot = SlotOf(*it);
     lag_->problem().frames[slot].Get<LiftedPoseTerm>().pose = nullptr;

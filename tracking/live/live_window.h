@@ -26,6 +26,7 @@ struct LiveRecord {
   std::vector<DenseKeypoint> dense;
   std::optional<BodyPose> initialiser;
   LiftedPose lifted;
+  std::optional<LiveFrame::Standing> standing;
   /// Observations of a held frame (Continuity::kHeld), kept until the jump is known to be a cut or not. Until then
   /// `seen`, `dense` and `initialiser` of the record are those of an empty frame.
   struct Held {

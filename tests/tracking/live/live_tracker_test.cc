@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "data_tools/learned/lifter_weights_io.h"
 #include "tests/support/sequence_scene.h"
 #include "tracking/live/live_history.h"
 #include "tracking/live/track_live.h"
@@ -75,6 +76,24 @@ double MeanJointErrorM(const LiveScene& live, const LiveFrame& frame) {
     sum += AxisAngleFromRotation(truth.rotations[j].transpose() * frame.state.rotations[j]).norm() / 24;
   }
   return sum + (truth.translation - frame.state.translation).norm();
+}
+
+TEST(LiveTracker, SlowClipsAreReadByTheLifterToo) {
+  // Of five frames a second the lifter reads samples between the frames.
+  const LifterWeights lifter = BuiltinLifter();
+  for (const double fps : {3.0, 5.0, 13.0, 30.0}) {
+    LiveScene live = MakeLiveScene(30, false);
+    live.input.lifter = &lifter;
+    live.options.lag = 2;
+    for (size_t t = 0; t < live.frames.size(); ++t) {
+      live.frames[t].timestamp = static_cast<double>(t) / fps;
+      live.frames[t].initialiser.reset();
+    }
+    LiveTracker tracker(live.input, live.options);
+    int read = 0;
+    for (const LiveFrame& frame : RunAll(&tracker, live.frames, 2)) read += frame.standing.has_value() ? 1 : 0;
+    EXPECT_GE(read, 24) << fps;
+  }
 }
 
 TEST(LiveTracker, EveryFrameComesOutAtTheStatedLagAndNearTheTruth) {
