@@ -2,15 +2,18 @@
 /// Detects everybody in a video, in memory: one thread decodes frames while others detect people.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "data_tools/observations/people.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/base/callbacks.h"
+#include "geometry/scene/background_tracks.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/track.h"
 #include "render/image/image.h"
+#include "tracking/detection/background_tracker.h"
 #include "tracking/detection/frame_detector.h"
 #include "tracking/detection/line_segments.h"
 
@@ -60,7 +63,8 @@ struct DetectPeopleRequest {
   /// Detection rate while everybody moves slowly, frames per second; other frames are interpolated (FillBetween()),
   /// without masks. 0: all frames.
   double detect_rate = 0;
-  bool keep_samples = false;  ///< DetectedClip::samples
+  bool keep_samples = false;       ///< DetectedClip::samples
+  bool follow_background = false;  ///< DetectedClip::background
 };
 
 struct DetectedClip {
@@ -69,7 +73,13 @@ struct DetectedClip {
   std::vector<std::vector<PackedLabels>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
   PeopleDetectorSummary detector;
   FrameSamples samples;  ///< of the video, for the lines of the room; empty unless asked for
+  /// Of the frames in which people were detected, for the camera's motion; empty unless asked for.
+  BackgroundTracks background;
 };
+
+/// The rectangle of landmarks that are seen, moved by `map`, with 15 % of its longer side around it: head, hands and
+/// feet reach beyond.
+CoveredRegion CoveredByPoints(std::span<const Keypoint> points, const Matrix2x3d& map);
 
 /// Throws RequestError when the detector's ONNX files contradict each other or are missing.
 void RequirePoseModels(const FrameDetectorOptions& detector);
