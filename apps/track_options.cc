@@ -80,6 +80,13 @@ void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
          "the name, as paths/{view}.json")
       ->group(kCamera)
       ->type_name("PATH");
+  app.add_flag_callback(
+         "--still", [&c] { c.find_camera_motion = false; },
+         "the camera stands still: do not look for its motion in the video")
+      ->group(kCamera);
+  app.add_option("--camera-path-out", c.camera_path_out, "the path of a camera that was found to turn, as JSON")
+      ->group(kCamera)
+      ->type_name("FILE");
   app.add_option("--camera-scale", c.camera_scale_m,
                  "metres a unit of the path (default: 1 for JSON; COLMAP's is found from standing feet)")
       ->group(kCamera)

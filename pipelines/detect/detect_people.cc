@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "data_tools/observations/load_cameras.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/base/check.h"
 #include "geometry/base/prefetcher.h"
@@ -54,6 +55,7 @@ class ClipDetector {
         mask_gate_(request.mask_rate),
         clip_(clip) {
     clip->people.convention = detector_->convention();
+    if (request.follow_background) background_.emplace();
   }
 
   /// needs_mask: in any case, if there are masks.
@@ -86,6 +88,7 @@ class ClipDetector {
     if (rate_ > 0) FillBetween(detected_, &clip_->people);
     for (size_t t = 0; t < clip_->masks.size(); ++t) clip_->masks[t].resize(clip_->people.frames[t].size());
     clip_->detector = detector_->summary();
+    if (background_) clip_->background = background_->Finish();
   }
 
  private:
@@ -99,10 +102,16 @@ class ClipDetector {
     std::vector<std::vector<FramePerson>> found = detector_->Detect(waiting_, waiting_with_mask_);
     for (size_t i = 0; i < found.size(); ++i) {
       const size_t place = places_[i];
+      std::vector<CoveredRegion> covered;
       for (FramePerson& person : found[i]) {
+        if (background_) {
+          covered.push_back(CoveredByPoints(person.person.points, NamedCamera().video_px_from_camera_px));
+          covered.back().mask = person.mask;
+        }
         clip_->people.frames[place].push_back(std::move(person.person));
         if (with_masks_) clip_->masks[place].emplace_back(person.mask);
       }
+      if (background_) background_->Push(waiting_[i], clip_->people.timestamps[place], covered);
       if (rate_ > 0) SeeHowFast(place);
     }
     waiting_.clear();
@@ -125,6 +134,7 @@ class ClipDetector {
   bool with_masks_, all_masks_;
   RateGate mask_gate_;
   DetectedClip* clip_;
+  std::optional<BackgroundTracker> background_;
   std::vector<char> detected_;
   std::vector<Image> waiting_;
   std::vector<char> waiting_with_mask_;
@@ -136,6 +146,27 @@ class ClipDetector {
 };
 
 }  // namespace
+
+CoveredRegion CoveredByPoints(std::span<const Keypoint> points, const Matrix2x3d& map) {
+  constexpr double kAroundPoints = 0.15;
+  constexpr float kSurePoint = 0.1F;
+  Eigen::Array2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (const Keypoint& point : points) {
+    if (!(point.confidence > kSurePoint)) continue;
+    const Eigen::Array2d at = (map * Eigen::Vector3d(point.x, point.y, 1)).array();
+    low = low.min(at);
+    high = high.max(at);
+  }
+  CoveredRegion region;
+  if (!(low <= high).all()) {
+    region.x1 = region.y1 = -1;
+    return region;
+  }
+  const double margin = kAroundPoints * (high - low).maxCoeff();
+  region.x0 = low.x() - margin, region.y0 = low.y() - margin;
+  region.x1 = high.x() + margin, region.y1 = high.y() + margin;
+  return region;
+}
 
 void RequirePoseModels(const FrameDetectorOptions& detector) {
   if (!detector.box_model.empty() && detector.pose_model.empty()) {

@@ -2,15 +2,18 @@
 /// Detects everybody in a video, in memory: one thread decodes frames while others detect people.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "data_tools/observations/people.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/base/callbacks.h"
+#include "geometry/scene/background_tracks.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/track.h"
 #include "render/image/image.h"
+#include "tracking/detection/background_tracker.h"
 #include "tracking/detection/frame_detector.h"
 #include "tracking/detection/line_segments.h"
 
@@ -64,7 +67,8 @@ struct DetectPeopleRequest {
   /// `all_masks` says so, or where they are kept as samples.
   double mask_rate = 0;
   bool all_masks = false;
-  bool keep_samples = false;  ///< DetectedClip::samples
+  bool keep_samples = false;       ///< DetectedClip::samples
+  bool follow_background = false;  ///< DetectedClip::background
 };
 
 struct DetectedClip {
@@ -74,7 +78,13 @@ struct DetectedClip {
   std::vector<char> mask_is_due;                 ///< [frame], 1 or 0: DetectPeopleRequest::mask_rate
   PeopleDetectorSummary detector;
   FrameSamples samples;  ///< of the video, for the lines of the room; empty unless asked for
+  /// Of the frames in which people were detected, for the camera's motion; empty unless asked for.
+  BackgroundTracks background;
 };
+
+/// The rectangle of landmarks that are seen, moved by `map`, with 15 % of its longer side around it: head, hands and
+/// feet reach beyond.
+CoveredRegion CoveredByPoints(std::span<const Keypoint> points, const Matrix2x3d& map);
 
 /// Throws RequestError when the detector's ONNX files contradict each other or are missing.
 void RequirePoseModels(const FrameDetectorOptions& detector);

@@ -164,7 +164,7 @@ TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneI
     if (tracked.any) continue;
     tracked.any = true;
     report->camera_scale = person.solve.camera_path;
-    const std::string warning = MovingCameraWarning(person.solve.camera_path, person.solve.ground);
+    const std::string warning = MovingCameraWarning(report->camera_path, person.solve.camera_path, person.solve.ground);
     if (!warning.empty()) callbacks.Message(warning);
   }
   return tracked;

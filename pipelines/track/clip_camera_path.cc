@@ -44,11 +44,13 @@ double CameraScaleOf(const SceneRequest& request, const RecordedCameraPath& path
 }
 
 std::string ToText(const CameraPathReport& report, const CameraPathSummary& solved) {
-  if (report.file.empty()) return "";
-  std::string text = Concatenate("path     ", report.poses, " poses of ", report.file,
-                                 report.by_sorted_name ? ", counted by their sorted names" : "");
+  std::string text = report.motion.empty() ? "" : "motion   " + report.motion + "\n";
+  if (!report.any()) return text;
+  text += Concatenate("path     ", report.poses, " poses of ", report.found ? "the video's background" : report.file,
+                      report.by_sorted_name ? ", counted by their sorted names" : "");
   if (report.interpolated > 0) text += Concatenate("; ", report.interpolated, " frames between them");
   if (report.beyond > 0) text += Concatenate("; ", report.beyond, " frames beyond them, taken to stand still");
+  if (report.found) return text + Concatenate(", within ", Fixed(report.sigma_deg, 3), " deg; it turns in place\n");
   text += "\nscale    ";
   if (!solved.estimated) return text + Fixed(solved.scale_m, 4) + " m a unit of the path, as given\n";
   if (solved.scale_m == 0) {
@@ -67,11 +69,16 @@ nlohmann::ordered_json ToJson(const CameraPathReport& report, const CameraPathSu
           {"scale_m", solved.scale_m},
           {"scale_estimated", solved.estimated},
           {"scale_sigma_m", solved.sigma_m},
-          {"scale_from", solved.why}};
+          {"scale_from", solved.why},
+          {"found", report.found},
+          {"motion", report.motion},
+          {"turned_deg", report.turned_deg},
+          {"rotation_sigma_deg", report.sigma_deg}};
 }
 
-std::string MovingCameraWarning(const CameraPathSummary& solved, const GroundSummary& ground) {
-  if (solved.moves || !(ground.standing_speed_mps > kStandingStill)) return "";
+std::string MovingCameraWarning(const CameraPathReport& report, const CameraPathSummary& solved,
+                                const GroundSummary& ground) {
+  if (solved.moves || report.is_still || !(ground.standing_speed_mps > kStandingStill)) return "";
   return "the camera seems to move: feet that stand move at " + Fixed(ground.standing_speed_mps, 2) +
          " m/s; give its path with --camera-path, without it places and speeds are the camera's too";
 }

@@ -16,11 +16,20 @@ namespace bodyloom {
 
 /// Report of the use of a camera path.
 struct CameraPathReport {
-  std::string file;             ///< empty: the camera is static
+  std::string file;             ///< empty: none was given
   int poses = 0;                ///< poses within the clip's time
   int interpolated = 0;         ///< frames between two poses of the path
   int beyond = 0;               ///< frames before its first or after its last pose
   bool by_sorted_name = false;  ///< images are matched by sorted name, as their names have no numbers
+
+  // Of the search for motion in the video (found_camera_motion.h).
+  std::string motion;     ///< kind and evidence; empty: it was not looked for
+  bool is_still = false;  ///< the background rests
+  bool found = false;     ///< the path is that of the search: a camera that turns in place
+  double turned_deg = 0;  ///< largest rotation of a path that was found
+  double sigma_deg = 0;   ///< largest standard deviation of its rotations, about an axis
+
+  [[nodiscard]] bool any() const { return found || !file.empty(); }
 };
 
 /// Interpolates camera_from_scene at the frames' times `seconds`; `clip_seconds` are the times of the whole clip.
@@ -35,8 +44,9 @@ double CameraScaleOf(const SceneRequest& request, const RecordedCameraPath& path
 /// Two lines with the number of poses, and the scale and its source; empty for a static camera.
 std::string ToText(const CameraPathReport& report, const CameraPathSummary& solved);
 /// Warning for a camera assumed to be static: one line if feet that the lifter labels as standing move faster than they
-/// do under a static camera (docs/lab/moving_camera.md); otherwise empty.
-std::string MovingCameraWarning(const CameraPathSummary& solved, const GroundSummary& ground);
+/// do under a static camera (docs/lab/moving_camera.md), unless the search in the video said what it does.
+std::string MovingCameraWarning(const CameraPathReport& report, const CameraPathSummary& solved,
+                                const GroundSummary& ground);
 
 /// The report's fields, and the scale and its source, as JSON.
 nlohmann::ordered_json ToJson(const CameraPathReport& report, const CameraPathSummary& solved);

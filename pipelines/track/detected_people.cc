@@ -5,6 +5,7 @@
 
 #include "data_tools/observations/frame_numbers.h"
 #include "data_tools/observations/load_detections.h"
+#include "pipelines/track/found_camera_motion.h"
 #include "pipelines/track/observation_pixels.h"
 #include "pipelines/video/track_video.h"
 
@@ -27,6 +28,7 @@ DetectPeopleRequest DetectionOf(const TrackSettings& request, int max_people) {
   detect.all_masks = request.all_masks;
   detect.detect_rate = request.detect_rate;
   detect.keep_samples = request.use_lines;
+  detect.follow_background = WhyNoCameraMotion(request).empty();
   return detect;
 }
 

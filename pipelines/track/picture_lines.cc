@@ -15,23 +15,13 @@
 namespace bodyloom {
 namespace {
 
-constexpr double kAroundJoints = 0.15;  ///< of the longer side of their rectangle: head, hands and feet reach beyond
-constexpr float kSureJoint = 0.1F;
 constexpr int kMaxFramesRead = 1800;
 
 /// The rectangle of points that are seen, widened.
 void CoverJoints(std::span<const Keypoint> points, const Matrix2x3d& video_from_camera, const FrameSamples& samples,
                  CoveredPixels* covered) {
-  Eigen::Array2d low(1e9, 1e9), high(-1e9, -1e9);
-  for (const Keypoint& point : points) {
-    if (!(point.confidence > kSureJoint)) continue;
-    const Eigen::Array2d at = (video_from_camera * Eigen::Vector3d(point.x, point.y, 1)).array();
-    low = low.min(at);
-    high = high.max(at);
-  }
-  if (!(low <= high).all()) return;
-  const double margin = kAroundJoints * (high - low).maxCoeff();
-  CoverBox(low.x() - margin, low.y() - margin, high.x() + margin, high.y() + margin, samples, covered);
+  const CoveredRegion region = CoveredByPoints(points, video_from_camera);
+  if (region.x1 >= region.x0) CoverBox(region.x0, region.y0, region.x1, region.y1, samples.small(), covered);
 }
 
 Camera CameraOfLines(const SceneInputs& scene) {
@@ -86,7 +76,7 @@ PictureVertical VerticalOfClip(const TrackSettings& request, const DetectedClip&
     for (size_t person = 0; person < people.size(); ++person) {
       const bool has_mask = !clip.masks.empty() && !clip.masks[frame][person].empty();
       if (has_mask) {
-        CoverMask(clip.masks[frame][person].Unpacked(), samples, &covered[i]);
+        CoverMask(clip.masks[frame][person].Unpacked(), samples.small(), &covered[i]);
       } else {
         CoverJoints(people[person].points, NamedCamera().video_px_from_camera_px, samples, &covered[i]);
       }

@@ -86,6 +86,7 @@ TrackSequenceInput SceneInputs::ForTracker() const {
     input.focal_prior =
         FocalPrior::ForLens(camera.camera.width, camera.camera.height, focal_35mm_mm, focal_35mm_log_sigma);
   }
+  if (focal_of_turning) input.focal_prior = *focal_of_turning;
   return input;
 }
 

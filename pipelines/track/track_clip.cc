@@ -7,6 +7,7 @@
 #include "geometry/base/stopwatch.h"
 #include "pipelines/files.h"
 #include "pipelines/report_text.h"
+#include "pipelines/track/found_camera_motion.h"
 #include "pipelines/track/solve_track.h"
 #include "pipelines/track/track_inputs.h"
 #include "pipelines/track/track_outputs.h"
@@ -16,7 +17,8 @@ namespace {
 
 /// Everything that can be known to fail is made to fail now, before the long work.
 void CheckFiles(const TrackRequest& request) {
-  const std::vector<std::string> outputs = {request.out, request.overlay, request.json, request.report};
+  const std::vector<std::string> outputs = {request.out, request.overlay, request.json, request.report,
+                                            request.camera_path_out};
   RequireDistinct(RequireTrackInputs(request), outputs);
   if (!request.plan) {
     for (const std::string& path : outputs) {
@@ -32,6 +34,11 @@ PlanEntry EstimatedTime(const TrackInputs& inputs) {
   return {"time, an estimate", true,
           Concatenate(Fixed(1e-3 * frame_ms * inputs.num_frames(), 1), " s of processor time, ", frame_ms,
                       " ms a frame as measured on an AMD EPYC (Zen 5)")};
+}
+
+PlanEntry PlanOfMotion(const TrackRequest& request, const TrackInputs& inputs) {
+  const std::string why = request.live_lag ? "live tracking does not use it" : WhyNoCameraMotion(request);
+  return {"camera's motion", why.empty(), why.empty() ? inputs.camera_path_report.motion : why};
 }
 
 }  // namespace
@@ -50,6 +57,7 @@ TrackReport TrackClip(const TrackRequest& request, const PipelineCallbacks& call
   report.num_frames = inputs.num_frames();
   if (request.plan) {
     report.solve.plan = PlanSolve(request, inputs);
+    if (!request.video.empty()) report.solve.plan.push_back(PlanOfMotion(request, inputs));
     for (const PlanEntry& entry : PlanOutputs(request)) report.solve.plan.push_back(entry);
     report.solve.plan.push_back(EstimatedTime(inputs));
     return report;

@@ -19,6 +19,7 @@
 #include "pipelines/detect/upright_people.h"
 #include "pipelines/files.h"
 #include "pipelines/track/detected_people.h"
+#include "pipelines/track/found_camera_motion.h"
 #include "pipelines/track/observation_pixels.h"
 #include "pipelines/track/picture_lines.h"
 #include "tracking/detection/iuv_to_dense.h"
@@ -192,6 +193,20 @@ void CutToSpan(const TrackRequest& request, TrackInputs* inputs) {
   }
 }
 
+/// Cameras of the frames on the path. A path found in the video may lack frames that the detections have.
+void UsePath(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
+  const std::vector<double>& times = inputs->timestamps();
+  CameraPathReport& report = inputs->camera_path_report;
+  try {
+    inputs->camera_from_scene = CamerasAt(request, *inputs->camera_path, times, times, &report);
+    inputs->camera_scale_m = CameraScaleOf(request, *inputs->camera_path);
+  } catch (const std::runtime_error& error) {
+    if (!report.found) throw;
+    callbacks.Message(request.video + ": the camera's path does not fit the detections" + error.what());
+    report.found = false;
+  }
+}
+
 /// Detects people in the video: the chosen one's landmarks, and the mask.
 void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
   const DetectedClip clip = DetectForTracking(request, callbacks);
@@ -201,6 +216,9 @@ void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& cal
   inputs->keypoints = std::move(seen.keypoints);
   inputs->part_labels = std::move(seen.mask);
   UseFocal(request, &inputs->camera.camera);  // the lines need it
+  if (!request.live_lag && WhyNoCameraMotion(request).empty()) {
+    UseCameraMotion(request, clip.background, callbacks, inputs, &inputs->camera_path_report);
+  }
   inputs->picture_vertical = VerticalOfClip(request, clip, *inputs);
 }
 
@@ -268,15 +286,17 @@ TrackInputs LoadTrackInputs(const TrackRequest& given_request, const PipelineCal
   }
   UseFocal(request, &camera);
   if (!request.video.empty() && !DetectsPeople(request)) {
+    if (!request.live_lag && WhyNoCameraMotion(request).empty()) {
+      UseCameraMotion(request, BackgroundOfVideo(request, inputs.keypoints ? &*inputs.keypoints : nullptr, inputs),
+                      callbacks, &inputs, &inputs.camera_path_report);
+    }
     inputs.picture_vertical = VerticalOfVideo(request, inputs.keypoints ? &*inputs.keypoints : nullptr, inputs);
   }
   if (!request.init.empty()) inputs.initialiser = ReadInitialiser(request, inputs);
   if (!request.reference.empty()) inputs.reference = ReadReference(request, inputs);
   if (!DetectsPeople(request)) CutToSpan(request, &inputs);
   if (inputs.camera_path) {
-    inputs.camera_from_scene =
-        CamerasAt(request, *inputs.camera_path, inputs.timestamps(), inputs.timestamps(), &inputs.camera_path_report);
-    inputs.camera_scale_m = CameraScaleOf(request, *inputs.camera_path);
+    UsePath(request, callbacks, &inputs);
   }
   if (inputs.initialiser && !inputs.initialiser->landmarks.empty()) inputs.lifted = LiftedWith(request, inputs);
   return inputs;

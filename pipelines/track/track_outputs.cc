@@ -90,7 +90,8 @@ void WriteResults(const TrackRequest& request, const TrackInputs& inputs, const 
     report->solve.plan.push_back(entry);
   }
   if (report->solve.IsUsable()) {
-    const std::string warning = MovingCameraWarning(report->solve.camera_path, report->solve.ground);
+    const std::string warning =
+        MovingCameraWarning(report->camera_path, report->solve.camera_path, report->solve.ground);
     if (!warning.empty()) callbacks.Message(warning);
     clock->Begin("write");
     report->world = *track.world;

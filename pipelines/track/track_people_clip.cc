@@ -11,6 +11,7 @@
 #include "pipelines/detect/cut_masks.h"
 #include "pipelines/files.h"
 #include "pipelines/page/write_clip_page.h"
+#include "pipelines/track/found_camera_motion.h"
 #include "pipelines/track/overlay_video.h"
 #include "pipelines/track/people_outputs.h"
 #include "pipelines/track/track_inputs.h"
@@ -39,10 +40,11 @@ void CheckRequest(const TrackPeopleRequest& request, const GivenInMemory& given)
 }
 
 void CheckFiles(const TrackPeopleClipRequest& request) {
-  RequireDistinct(RequireFiles(request.track, request.track.detector),
-                  {FileIn(request, "detections.npz"), TrackFileIn(request.out, 0),
-                   request.masks ? MaskFile(request, 0) : "", request.overlay ? FileIn(request, "overlay.mp4") : "",
-                   request.report ? FileIn(request, "report.html") : "", FileIn(request, "summary.json")});
+  RequireDistinct(
+      RequireFiles(request.track, request.track.detector),
+      {FileIn(request, "detections.npz"), TrackFileIn(request.out, 0), request.masks ? MaskFile(request, 0) : "",
+       request.overlay ? FileIn(request, "overlay.mp4") : "", request.report ? FileIn(request, "report.html") : "",
+       FileIn(request, "summary.json"), request.track.camera_path_out});
   RequireWritableFolder(request.out);
 }
 
@@ -77,6 +79,13 @@ SceneInputs SceneOf(const TrackPeopleRequest& request, const GivenInMemory& give
   SceneInputs scene = LoadSceneInputs(named, given);
   UseFocal(named, &scene.camera.camera);
   return scene;
+}
+
+void FindMotion(const TrackPeopleRequest& request, const ChosenPeople& people, const PipelineCallbacks& callbacks,
+                StageTimes* clock, SceneInputs* scene, TrackPeopleReport* report) {
+  if (!WhyNoCameraMotion(request.track).empty()) return;
+  clock->Begin("camera");
+  UseCameraMotion(request.track, people.clip.background, callbacks, scene, &report->camera_path);
 }
 
 void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scene, const TrackedScene& tracked,
@@ -127,10 +136,11 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   TrackPeopleClipRequest request = given_request;
   request.track = WithTurn(request.track, callbacks);
   request.track.all_masks = request.masks;
-  const SceneInputs scene = SceneOf(request, given);
+  SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
   TrackPeopleReport report = ReportOf(request, people);
+  FindMotion(request, people, callbacks, &clock, &scene, &report);
   clock.Begin("write");
   report.outputs.push_back(FileIn(request, "detections.npz"));
   WritePeople(report.outputs.back(), people.clip.people);
@@ -163,11 +173,12 @@ TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& given_request, const
   clock.Begin("read");
   TrackPeopleRequest request = given_request;
   request.track = WithTurn(request.track, callbacks);
-  const SceneInputs scene = SceneOf(request, given);
+  SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
   TrackedPeople found;
   found.report = ReportOf(request, people);
+  FindMotion(request, people, callbacks, &clock, &scene, &found.report);
   clock.Begin("track");
   TrackedScene tracked = TrackDetectedPeople(request, scene, people, callbacks, &found.report);
   RequireAnyTrack(request, tracked);

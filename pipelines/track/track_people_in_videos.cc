@@ -48,6 +48,7 @@ TrackPeopleRequest RequestOfVideo(const TrackPeopleInVideosRequest& request, siz
   one.track.video = request.videos[v];
   one.track.view = "";
   one.track.use_mask = false;  // which several views do not use
+  one.track.find_camera_motion = false;
   if (v == 0) return one;
   one.max_people = 0;
   one.person.reset();
@@ -59,6 +60,7 @@ TrackPeopleRequest RequestOfVideo(const TrackPeopleInVideosRequest& request, siz
 void RefuseUnused(const TrackPeopleInVideosRequest& request) {
   const TrackSettings& track = request.track;
   const std::vector<std::pair<bool, const char*>> unused = {{!track.camera_path.empty(), "--camera-path"},
+                                                            {!track.camera_path_out.empty(), "--camera-path-out"},
                                                             {request.masks, "--masks"},
                                                             {track.camera == "weak", "--camera weak"}};
   for (const auto& [given, option] : unused) {

@@ -161,7 +161,8 @@ std::string ToJson(const TrackPeopleReport& report) {
   for (const ViewReport& view : report.views) json["views"].push_back(ToJson(view));
   AddHandsAndFaces(report.hands_and_faces, &json);
   if (report.masks_cut) json["masks_cut"] = *report.masks_cut;
-  if (!report.camera_path.file.empty()) json["camera_path"] = ToJson(report.camera_path, report.camera_scale);
+  if (report.camera_path.any() || !report.camera_path.motion.empty())
+    json["camera_path"] = ToJson(report.camera_path, report.camera_scale);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

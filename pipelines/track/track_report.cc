@@ -229,7 +229,8 @@ std::string ToJson(const TrackReport& report) {
   }
   for (const TermCost& cost : solve.costs) json["cost_by_term"][cost.term] = cost.cost;
   if (solve.worst_stretch) json["worst_stretch"] = ToJson(*solve.worst_stretch);
-  if (!report.camera_path.file.empty()) json["camera_path"] = ToJson(report.camera_path, solve.camera_path);
+  if (report.camera_path.any() || !report.camera_path.motion.empty())
+    json["camera_path"] = ToJson(report.camera_path, solve.camera_path);
   for (const ViewReport& view : report.views) json["views"].push_back(ToJson(view));
   if (report.initialiser) json["initialiser"] = ToJson(*report.initialiser);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

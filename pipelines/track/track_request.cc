@@ -43,6 +43,11 @@ void CheckTrackSettings(const TrackSettings& request) {
   if (request.camera == "pinhole" && request.cameras.empty() && request.focal_px == 0 && request.camera_path.empty()) {
     throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
   }
+  if (!request.camera_path_out.empty() &&
+      (request.video.empty() || !request.find_camera_motion || !request.camera_path.empty())) {
+    throw RequestError(
+        "--camera-path-out writes the path that is found in the video: leave out --still and --camera-path");
+  }
   if (request.camera_path.empty() &&
       (request.camera_scale_m > 0 || request.camera_path_first >= 0 || request.camera_path_fps > 0)) {
     throw RequestError("--camera-scale, --camera-path-first and --camera-path-fps are of a path: give --camera-path");

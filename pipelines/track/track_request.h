@@ -29,11 +29,13 @@ struct SceneRequest {
   /// 35 mm equivalent focal length (36 mm × 24 mm) where the focal length is estimated; 0: from the metadata of the
   /// video or photo.
   double focal_35mm_mm = 0;
-  std::string camera_path;     ///< poses of a moving camera (load_camera_path.h); empty: static camera
-  double camera_scale_m = 0;   ///< metres per unit of the path; 0: the file's, else estimated from the person
-  int camera_path_first = -1;  ///< index of the clip's first frame in the path (PlaceInTime)
-  double camera_path_fps = 0;  ///< frame rate of the path's numbered frames; 0: the clip's
-  bool use_lines = true;       ///< the picture's straight lines tell the vertical (tracking/room/picture_vertical.h)
+  std::string camera_path;         ///< poses of a moving camera (load_camera_path.h); empty: static camera
+  double camera_scale_m = 0;       ///< metres per unit of the path; 0: the file's, else estimated from the person
+  int camera_path_first = -1;      ///< index of the clip's first frame in the path (PlaceInTime)
+  double camera_path_fps = 0;      ///< frame rate of the path's numbered frames; 0: the clip's
+  bool find_camera_motion = true;  ///< without a path: look whether the video's camera moved
+  std::string camera_path_out;     ///< the path found, .json; empty: not written
+  bool use_lines = true;  ///< the picture's straight lines tell the vertical (tracking/room/picture_vertical.h)
   int image_width = 0, image_height = 0;  ///< used if neither camera, video nor detections give it
 };
 

@@ -46,6 +46,7 @@ TrackRequest RequestOfView(const TrackViewsRequest& request, size_t v) {
   one.detections = DetectionsOf(request, v);
   one.view = request.views.empty() ? "" : request.views[v];
   one.camera_path = PathOfView(request, v);
+  one.find_camera_motion = false;
   if (v > 0) {
     one.video = one.reference = "";
     one.from_s = 0;

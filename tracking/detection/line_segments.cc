@@ -14,7 +14,6 @@ namespace bodyloom {
 namespace {
 
 constexpr int kLargestSide = 1280;  ///< pixels of a sample
-constexpr double kAroundMask = 0.04;
 constexpr double kMinSeenShare = 0.2, kMaxMaskedShare = 0.1;
 constexpr double kNearBorder = 0.008;  ///< of the longer side
 constexpr double kWholeSide = 0.95;    ///< of a side
@@ -87,8 +86,6 @@ bool IsFrameOfPicture(const StillPicture& picture, const LineSegment& segment) {
   return along || across;
 }
 
-size_t NumPixels(const FrameSamples& samples) { return size_t(samples.width()) * samples.height(); }
-
 }  // namespace
 
 bool FrameSamples::Add(const Image& frame) {
@@ -96,9 +93,7 @@ bool FrameSamples::Add(const Image& frame) {
     BODYLOOM_CHECK(!frame.empty(), "line segments: a frame without pixels");
     image_width_ = frame.width;
     image_height_ = frame.height;
-    scale_ = std::max(1.0, std::max(frame.width, frame.height) / double(kLargestSide));
-    width_ = std::max(1, static_cast<int>(std::lround(frame.width / scale_)));
-    height_ = std::max(1, static_cast<int>(std::lround(frame.height / scale_)));
+    small_ = SmallPicture::Of(frame.width, frame.height, kLargestSide);
   }
   BODYLOOM_CHECK(frame.width == image_width_ && frame.height == image_height_, "line segments: a frame of ",
                  frame.width, "x", frame.height, ", expected ", image_width_, "x", image_height_);
@@ -109,59 +104,23 @@ bool FrameSamples::Add(const Image& frame) {
     samples_.resize(kFewestSamples);
     step_ *= 2;
   }
-  GreySample& sample = samples_.emplace_back();
-  sample.frame = index;
-  sample.grey.resize(size_t(width_) * height_);
-  // OpenCV does not write to a matrix that it only reads.
-  const cv::Mat colours(frame.height, frame.width, CV_8UC3, const_cast<uint8_t*>(frame.bgr.data()));
-  cv::Mat grey(height_, width_, CV_8UC1, sample.grey.data());
-  if (scale_ == 1) {
-    cv::cvtColor(colours, grey, cv::COLOR_BGR2GRAY);
-    return true;
-  }
-  cv::Mat small;
-  cv::resize(colours, small, grey.size(), 0, 0, cv::INTER_AREA);
-  cv::cvtColor(small, grey, cv::COLOR_BGR2GRAY);
+  samples_.push_back({index, ShrunkGrey(frame, small_)});
   return true;
 }
 
-void CoverBox(double x0, double y0, double x1, double y1, const FrameSamples& samples, CoveredPixels* covered) {
-  covered->resize(NumPixels(samples), 0);
-  if (!(std::isfinite(x0) && std::isfinite(x1) && std::isfinite(y0) && std::isfinite(y1))) return;
-  const auto small = [&](double v, int size) {
-    return static_cast<int>(std::lround(std::clamp((v + 0.5) / samples.scale(), 0.0, double(size))));
-  };
-  const int left = small(std::min(x0, x1), samples.width()), right = small(std::max(x0, x1), samples.width());
-  for (int y = small(std::min(y0, y1), samples.height()); y < small(std::max(y0, y1), samples.height()); ++y) {
-    std::fill_n(covered->begin() + std::ptrdiff_t(y) * samples.width() + left, right - left, uint8_t{1});
-  }
-}
-
-void CoverMask(const LabelImage& mask, const FrameSamples& samples, CoveredPixels* covered) {
-  covered->resize(NumPixels(samples), 0);
-  cv::Mat inside(samples.height(), samples.width(), CV_8UC1, cv::Scalar(0)), wide;
-  const double scale = samples.scale();
-  const auto frame_pixel = [&](int v) { return static_cast<int>(std::lround(scale * (v + 0.5) - 0.5)); };
-  for (int y = 0; y < samples.height(); ++y) {
-    const int row = frame_pixel(y);
-    if (row < mask.y_begin || row >= mask.y_begin + mask.height) continue;
-    for (int x = 0; x < samples.width(); ++x) inside.at<uint8_t>(y, x) = mask.At(frame_pixel(x), row) != 0 ? 1 : 0;
-  }
-  const int margin = 1 + static_cast<int>(kAroundMask * std::max(mask.width, mask.height) / scale);
-  cv::dilate(inside, wide, cv::getStructuringElement(cv::MORPH_RECT, {2 * margin + 1, 2 * margin + 1}));
-  cv::Mat all(samples.height(), samples.width(), CV_8UC1, covered->data());
-  all |= wide;
-}
-
 StillPicture MedianPicture(const FrameSamples& samples, std::span<const CoveredPixels> covered, int num_threads) {
-  const size_t pixels = NumPixels(samples);
+  const size_t pixels = samples.small().num_pixels();
   BODYLOOM_CHECK(covered.empty() || covered.size() == samples.samples().size(), "line segments: people of ",
                  covered.size(), " frames, expected ", samples.samples().size());
   for (const CoveredPixels& people : covered) {
     BODYLOOM_CHECK(people.empty() || people.size() == pixels, "line segments: people in ", people.size(),
                    " pixels, expected ", pixels);
   }
-  StillPicture picture{.width = samples.width(), .height = samples.height(), .scale = samples.scale()};
+  const SmallPicture& size = samples.small();
+  StillPicture picture;
+  picture.width = size.width;
+  picture.height = size.height;
+  picture.scale = size.scale;
   if (pixels == 0) return picture;
   picture.grey.resize(pixels);
   picture.people.assign(pixels, 0);

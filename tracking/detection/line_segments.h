@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/scene/label_image.h"
 #include "geometry/scene/line_segment.h"
 #include "render/image/image.h"
+#include "tracking/detection/small_picture.h"
 
 namespace bodyloom {
 
@@ -34,31 +34,20 @@ class FrameSamples {
 
   [[nodiscard]] int image_width() const { return image_width_; }
   [[nodiscard]] int image_height() const { return image_height_; }
-  [[nodiscard]] int width() const { return width_; }  ///< of the samples
-  [[nodiscard]] int height() const { return height_; }
-  /// Pixels of a frame a pixel of a sample, 1 or more; sample pixel (x, y) is at scale · (x + ½) − ½ of the frame.
-  [[nodiscard]] double scale() const { return scale_; }
+  [[nodiscard]] const SmallPicture& small() const { return small_; }  ///< of the samples
   [[nodiscard]] const std::vector<GreySample>& samples() const { return samples_; }
 
  private:
-  int image_width_ = 0, image_height_ = 0, width_ = 0, height_ = 0;
-  double scale_ = 1;
+  int image_width_ = 0, image_height_ = 0;
+  SmallPicture small_;
   int next_ = 0, step_ = 1;
   std::vector<GreySample> samples_;
 };
 
-/// People in a sample: width·height, not 0 where somebody may be.
-using CoveredPixels = std::vector<uint8_t>;
-
-/// Adds a person's mask, in pixels of the frames, with 4 % of its longer side around it.
-void CoverMask(const LabelImage& mask, const FrameSamples& samples, CoveredPixels* covered);
-/// Adds a rectangle between two corners, in pixels of the frames; parts outside the picture are left out.
-void CoverBox(double x0, double y0, double x1, double y1, const FrameSamples& samples, CoveredPixels* covered);
-
 /// The room behind the people.
 struct StillPicture {
   int width = 0, height = 0;
-  double scale = 1;             ///< FrameSamples::scale()
+  double scale = 1;             ///< SmallPicture::scale
   std::vector<uint8_t> grey;    ///< median
   std::vector<uint8_t> people;  ///< not 0: masked
   /// Of the pixels that are not masked: share whose median absolute deviation over the frames exceeds 8 levels. Above

@@ -80,7 +80,7 @@ TEST(LineSegments, OfAMaskedPersonAreNotUsed) {
   CoveredPixels covered;
   LabelImage mask{.x_begin = 350, .y_begin = 120, .width = 200, .height = 200};
   mask.labels.assign(200 * 200, 1);
-  CoverMask(mask, samples, &covered);
+  CoverMask(mask, samples.small(), &covered);
   const std::vector<LineSegment> masked = FindLineSegments(MedianPicture(samples, std::vector<CoveredPixels>{covered}));
   EXPECT_EQ(NumInside(masked, 340, 110, 560, 330), 0);
   EXPECT_TRUE(HasUpright(masked, 99.5, 119.5, 359.5, 1.5)) << "the room's are still there";
@@ -94,7 +94,7 @@ TEST(LineSegments, OfAPersonWhoWalksAreNotInTheMedian) {
     AddPerson(20 + 45 * t, 150, 150, &frames.back());
     FrameSamples sample;
     sample.Add(frames.back());
-    CoverBox(20 + 45 * t, 150, 170 + 45 * t, 300, sample, &covered.emplace_back());
+    CoverBox(20 + 45 * t, 150, 170 + 45 * t, 300, sample.small(), &covered.emplace_back());
   }
   const std::vector<LineSegment> segments = Find(frames, covered);
   for (const double x : {99.5, 131.5, 399.5, 431.5}) EXPECT_TRUE(HasUpright(segments, x, 119.5, 359.5, 1.5)) << x;
@@ -128,9 +128,9 @@ TEST(MedianPicture, MasksWhatPeopleAlwaysCover) {
   std::vector<CoveredPixels> covered(10);
   for (int t = 0; t < 10; ++t) {
     samples.Add(Image(100, 50, {uint8_t(10 * t), uint8_t(10 * t), uint8_t(10 * t)}));
-    CoverBox(-0.5, -0.5, 9.5, 49.5, samples, &covered[t]);               // always
-    if (t > 1) CoverBox(9.5, -0.5, 19.5, 49.5, samples, &covered[t]);    // seen twice: a fifth
-    if (t != 4) CoverBox(19.5, -0.5, 29.5, 49.5, samples, &covered[t]);  // seen once
+    CoverBox(-0.5, -0.5, 9.5, 49.5, samples.small(), &covered[t]);               // always
+    if (t > 1) CoverBox(9.5, -0.5, 19.5, 49.5, samples.small(), &covered[t]);    // seen twice: a fifth
+    if (t != 4) CoverBox(19.5, -0.5, 29.5, 49.5, samples.small(), &covered[t]);  // seen once
   }
   const StillPicture picture = MedianPicture(samples, covered, 2);
   EXPECT_EQ(picture.people[5], 1);
@@ -166,8 +166,8 @@ TEST(FrameSamples, WrongSizesAreRefused) {
   EXPECT_THROW(MedianPicture(samples, std::vector<CoveredPixels>{CoveredPixels(7)}), std::invalid_argument);
   CoveredPixels covered;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CoverBox(nan, 0, 5, 5, samples, &covered);
-  CoverBox(-1e12, -1e12, -1e11, 1e12, samples, &covered);
+  CoverBox(nan, 0, 5, 5, samples.small(), &covered);
+  CoverBox(-1e12, -1e12, -1e11, 1e12, samples.small(), &covered);
   EXPECT_EQ(std::count(covered.begin(), covered.end(), 1), 0);
   EXPECT_TRUE(FindLineSegments(MedianPicture(FrameSamples(), {})).empty());
 }
