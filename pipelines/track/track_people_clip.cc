@@ -126,9 +126,10 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   clock.Begin("read");
   TrackPeopleClipRequest request = given_request;
   request.track = WithTurn(request.track, callbacks);
-  const SceneInputs scene = SceneOf(request, given);
+  SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
+  scene.body = BodyFor(request, given, people, scene.body);
   TrackPeopleReport report = ReportOf(request, people);
   clock.Begin("write");
   report.outputs.push_back(FileIn(request, "detections.npz"));
@@ -162,9 +163,10 @@ TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& given_request, const
   clock.Begin("read");
   TrackPeopleRequest request = given_request;
   request.track = WithTurn(request.track, callbacks);
-  const SceneInputs scene = SceneOf(request, given);
+  SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
+  scene.body = BodyFor(request, given, people, scene.body);
   TrackedPeople found;
   found.report = ReportOf(request, people);
   clock.Begin("track");
