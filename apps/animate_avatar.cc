@@ -6,6 +6,7 @@
 
 #include "apps/progress.h"
 #include "apps/shown_motion_options.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "pipelines/gaussian_avatar/animate_avatar.h"
 
@@ -41,7 +42,7 @@ void AddAnimateAvatar(CLI::App& animate, Action* action) {
   verb->add_option("--set", request->set,
                    "A single-person dataset of the images, with the garment's pixels, for `bodyloom metrics`")
       ->type_name("DIR");
-  verb->add_option("--body", request->body, "The track's body (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", request->body, BodyHelp("The track's body"));
   AddShownMotion(verb, {&request->view_yaw, &request->freeze, &request->background, &request->shape_of_track});
   verb->add_option("--size", request->size, "Pixels of the image's longer side (default: as the track's)")
       ->check(CLI::Range(2, 8192));

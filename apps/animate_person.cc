@@ -10,6 +10,7 @@
 #include "apps/detector_options.h"
 #include "apps/exec_beside.h"
 #include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "pipelines/photo_avatar/animate_person.h"
 
@@ -75,7 +76,7 @@ void AddAnimatePerson(CLI::App& animate, Action* action, std::vector<std::string
   verb->add_option("--texture-size", request->photos.texture_size, "Texels a side")->capture_default_str();
   verb->add_flag("--no-loose-garment{false}", request->photos.loose_garment,
                  "Look for no skirt, dress or coat: all clothes are close to the skin");
-  verb->add_option("--body", fit.body, "Body of photos and track (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", fit.body, BodyHelp("Body of photos and track"));
   verb->add_option("--focal", fit.focal_px, "The photos' focal length in pixels (default: estimated)");
   verb->add_option("--stature", fit.stature_m, "The person's height in metres (default: average)");
   AddDetectorOptions(*verb, &fit.detector, &fit.detect_rate, "Detection");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/synth_options.h"
+#include "apps/usage_error.h"
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -12,9 +13,7 @@ void AddSynthOptions(CLI::App& app, SynthesizeClipRequest* request, bool* quiet)
   const std::string what = "What", camera = "The camera", dense = "Dense keypoints", joints = "2D joints",
                     other = "Other faults";
   app.add_option("--motion", c.motion.name, kMotionHelp)->required()->group(what);
-  app.add_option("--body", c.body, "body model (default: the built-in body; hands: with fingers)")
-      ->group(what)
-      ->type_name("FILE");
+  app.add_option("--body", c.body, BodyHelp("body model"))->group(what)->type_name("FILE");
   app.add_option("--out", c.out, "folder for observations.npz, truth.npz, camera.json")
       ->required()
       ->group(what)

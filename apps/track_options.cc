@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/detector_options.h"
+#include "apps/usage_error.h"
 #include "geometry/base/check.h"
 
 namespace bodyloom {
@@ -105,8 +106,7 @@ void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
 
 void AddLearnedOptions(CLI::App& app, TrackSettings* request) {
   TrackSettings& c = *request;
-  app.add_option("--body", c.body,
-                 "body model: SMPL, SMPL-H or SMPL-X .pkl or .npz (default: the built-in body; hands: with fingers)")
+  app.add_option("--body", c.body, BodyHelp("body model: SMPL, SMPL-H or SMPL-X .pkl or .npz"))
       ->group(kKnown)
       ->type_name("FILE");
   app.add_option("--stature", c.stature_m,

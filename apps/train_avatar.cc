@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "pipelines/gaussian_avatar/train_avatar.h"
 
@@ -54,7 +55,7 @@ void AddTrainAvatar(CLI::App& train, Action* action) {
       "--mask", request->clip.mask,
       "For a video: the person's mask (bodyloom detect --mask, bodyloom run --masks) or DensePose's parts");
   verb->add_option("--out", request->out, "Folder of the run")->required();
-  verb->add_option("--body", request->clip.body, "The track's body (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", request->clip.body, BodyHelp("The track's body"));
   verb->add_option("--train", request->train, "Frames to learn from, FIRST-LAST (default: the first four fifths)");
   verb->add_option("--validate", request->validate, "Frames to judge by (default: the last fifth)");
   CLI::Option* steps = verb->add_option("--steps", request->steps, "Steps, of one frame each")

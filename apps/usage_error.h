@@ -45,6 +45,11 @@ constexpr const char* kExitCodeHelp =
     "Exit codes: 0 done, 1 failed (one line on stderr says why), 2 wrong usage, 130 interrupted.\n"
     "Output files are written whole or not at all.";
 
+/// Help of an option that takes a body: `what` it is of, and what is taken without the option.
+inline std::string BodyHelp(const std::string& what) {
+  return what + " (default: the built-in body; hands: with fingers)";
+}
+
 // Main function of the programs installed beside `bodyloom`: parsing, running the action, and errors.
 
 /// Parses the arguments, then runs the `action` set by their verb. `name`: the program's name for users, printed before

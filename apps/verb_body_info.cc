@@ -9,6 +9,7 @@
 
 #include "apps/exec_beside.h"
 #include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "data_tools/body/body_io.h"
 #include "data_tools/body/builtin_body.h"
@@ -55,8 +56,7 @@ void AddBodyInfo(CLI::App& verb, Action* action, const std::vector<std::string>&
   CheckBodyRequest& to_check = arguments->request;
   to_check.surface_tools = std::move(tools);
   CLI::App* info = verb.add_subcommand("info", "Prints what a body file holds and what it lacks");
-  info->add_option("--body,body", to_check.body, "body model (default: the built-in body; hands: with fingers)")
-      ->type_name("FILE");
+  info->add_option("--body,body", to_check.body, BodyHelp("body model"))->type_name("FILE");
   CLI::Option* check = info->add_flag("--check", arguments->check, "look for faults of its mesh (below)");
   CLI::Option* track = info->add_option("--track", to_check.track, "also for crossing faces in its poses, .npz");
   track->type_name("FILE")->needs(check);

@@ -58,8 +58,7 @@ void AddDescribeVerb(CLI::App& app, Action* action) {
   verb->add_option("--out", c.out, "where to write the maps, .npy (and .json beside it)")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--body", c.body, "the track's body (default: the built-in body; hands: with fingers)")
-      ->type_name("FILE");
+  verb->add_option("--body", c.body, BodyHelp("the track's body"))->type_name("FILE");
   verb->add_option("--size", a.size, "texels a side")->capture_default_str()->check(CLI::Range(1, 16384));
   verb->add_option("--past", c.options.past, "velocity maps a frame, its own included")
       ->capture_default_str()

@@ -40,15 +40,13 @@ struct Parsed {
 
 void AddDenseOptions(CLI::App* verb, Parsed* parsed) {
   constexpr const char* kGroup = "Dense keypoints";
-  const auto add = [&](const char* name, std::string* value, const char* help, const char* type) {
+  const auto add = [&](const char* name, std::string* value, const std::string& help, const char* type) {
     return verb->add_option(name, *value, help)->group(kGroup)->type_name(type);
   };
   CLI::Option* model = add("--dense-model", &parsed->dense_model, "DensePose as a TorchScript file", "FILE");
   CLI::Option* out = add("--dense-out", &parsed->request.dense, "one person's dense keypoints, .npz", "FILE");
   model->needs(out), out->needs(model);
-  add("--body", &parsed->request.body, "body on whose faces they lie (default: the built-in body; hands: with fingers)",
-      "FILE")
-      ->needs(out);
+  add("--body", &parsed->request.body, BodyHelp("body on whose faces they lie"), "FILE")->needs(out);
   add("--device", &parsed->device, "where the network runs", "")
       ->check(CLI::IsMember({"cpu", "cuda"}))
       ->capture_default_str()

@@ -52,8 +52,7 @@ void AddEvaluateVerb(CLI::App& app, Action* action) {
           },
           "instead of --truth: what a calibrated camera saw of the person, VIEW[:PERSON]=FILE, once a camera")
       ->type_name("TEXT");
-  verb->add_option("--body", c.body, "body that both were made with (default: the built-in body; hands: with fingers)")
-      ->type_name("FILE");
+  verb->add_option("--body", c.body, BodyHelp("body that both were made with"))->type_name("FILE");
   verb->add_option("--true-body", c.true_body, "EMDB, 3DPW, RICH: the true motion's body, of its sex (default: --body)")
       ->type_name("FILE");
   verb->add_option("--true-person", c.true_person, "3DPW, RICH: which of the people")

@@ -79,8 +79,7 @@ void AddExportVerb(CLI::App& app, Action* action) {
       ->check(CLI::IsMember(SortedNames()))
       ->type_name("KIND");
   verb->add_option("--out", c.out, "where to write it")->required()->type_name("PATH");
-  verb->add_option("--body", c.body, "the track's body (default: the built-in body; hands: with fingers)")
-      ->type_name("FILE");
+  verb->add_option("--body", c.body, BodyHelp("the track's body"))->type_name("FILE");
   verb->add_option("--frame", c.frame, "obj: only this frame, counted from 0")->check(CLI::NonNegativeNumber);
   verb->add_option("--axes", *axes, "vertices, joints, obj: camera or world")
       ->check(CLI::IsMember({"camera", "world"}))

@@ -46,8 +46,7 @@ void AddParseVerb(CLI::App& app, Action* action) {
       ->capture_default_str();
   verb->add_option("--person", request->fit.person, "Of several people in the photo: 0 is the largest")
       ->capture_default_str();
-  verb->add_option("--body", request->fit.body,
-                   "The body that is fitted (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", request->fit.body, BodyHelp("The body that is fitted"));
   verb->add_option("--focal", request->fit.focal_px, "The photo's focal length in pixels (default: estimated)");
   verb->add_option("--stature", request->fit.stature_m, "The person's height in metres (default: average)");
   AddDetectorOptions(*verb, &request->fit.detector, &request->fit.detect_rate, "Detection");

@@ -66,8 +66,7 @@ void AddRenderVerb(CLI::App& app, Action* action) {
       ->type_name("KIND");
   verb->add_option("--out", c.out, "where to write it: .mp4, .png or .npz")->required()->type_name("FILE");
   verb->add_option("--video", c.video, "what the person was filmed with, as background")->type_name("FILE");
-  verb->add_option("--body", c.body, "the track's body (default: the built-in body; hands: with fingers)")
-      ->type_name("FILE");
+  verb->add_option("--body", c.body, BodyHelp("the track's body"))->type_name("FILE");
   verb->add_option("--frames", c.frames, "only frames a to b-1; one number: that frame (default: all)")
       ->type_name("a:b");
   verb->add_option("--view-yaw", c.view_yaw_deg,

@@ -77,7 +77,7 @@ void AddSynthPeopleVerb(CLI::App& app, Action* action) {
       ->check(CLI::IsMember({"studio", "natural"}))
       ->capture_default_str();
   verb->add_option("--seed", c.set.seed, "same seed, same files")->capture_default_str();
-  verb->add_option("--body", c.body, "body model (default: the built-in body; hands: with fingers)")->type_name("FILE");
+  verb->add_option("--body", c.body, BodyHelp("body model"))->type_name("FILE");
   verb->add_option("--sheet", c.sheet, "also write a contact sheet, .png or .jpg")->type_name("FILE");
   verb->add_option("--threads", c.set.num_threads, "0: all cores")->check(CLI::Range(0, 1024))->capture_default_str();
   verb->add_flag("--quiet", arguments->quiet, "no words on the screen");

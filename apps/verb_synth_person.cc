@@ -96,7 +96,7 @@ void AddSynthPersonVerb(CLI::App& app, Action* action) {
   verb->add_option("--shape", c.set.shape_sigma, "how far bodies of different seeds differ, standard deviations")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
-  verb->add_option("--body", c.body, "body model (default: the built-in body; hands: with fingers)")->type_name("FILE");
+  verb->add_option("--body", c.body, BodyHelp("body model"))->type_name("FILE");
   verb->add_option("--sheet", c.sheet, "also write a contact sheet, .png or .jpg")->type_name("FILE");
   verb->add_option("--threads", c.set.num_threads, "0: all cores")->check(CLI::Range(0, 1024))->capture_default_str();
   verb->add_flag("--quiet", arguments->quiet, "no words on the screen");

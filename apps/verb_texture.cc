@@ -47,8 +47,7 @@ void AddTextureVerb(CLI::App& app, Action* action) {
   verb->add_option("--track", c.track, "the track, .npz")->required()->type_name("FILE");
   verb->add_option("--video", c.video, "the video, or a folder of images")->required()->type_name("PATH");
   verb->add_option("--out", c.out, "the texture, .png or .jpg")->required()->type_name("FILE");
-  verb->add_option("--body", c.body, "the track's body (default: the built-in body; hands: with fingers)")
-      ->type_name("FILE");
+  verb->add_option("--body", c.body, BodyHelp("the track's body"))->type_name("FILE");
   verb->add_option("--size", c.texture.size, "texels a side")->capture_default_str()->check(CLI::Range(1, 8192));
   verb->add_option("--every", c.every, "look at every n-th frame")->capture_default_str()->check(CLI::PositiveNumber);
   verb->add_option("--merge", arguments->merge, "median or mean of the best views")

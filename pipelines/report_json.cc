@@ -47,6 +47,22 @@ void AddHandsAndFaces(const HandsAndFaceSummary& summary, nlohmann::ordered_json
   (*report)["hands_and_faces_seconds"] = summary.seconds;
 }
 
+void AddFittedParts(const TrackSequenceSummary& summary, nlohmann::ordered_json* report) {
+  const auto add = [&](const char* what, const PartFitSummary& part) {
+    (*report)[what] = {{"fitted", part.ran},
+                       {"why", part.why},
+                       {"frames_seen", part.frames_seen},
+                       {"iterations", part.iterations},
+                       {"median_px", part.median_px},
+                       {"size", part.size}};
+  };
+  if (summary.hands.size() == 2) {
+    add("left_hand", summary.hands[0]);
+    add("right_hand", summary.hands[1]);
+  }
+  if (summary.head) add("head", *summary.head);
+}
+
 void WriteReport(const std::string& path, const nlohmann::ordered_json& report) {
   if (!path.empty()) WriteFileAtomically(path, report.dump(2) + "\n");
 }

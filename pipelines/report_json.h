@@ -9,6 +9,7 @@
 #include "geometry/base/stopwatch.h"
 #include "geometry/scene/world_frame.h"
 #include "tracking/detection/hands_and_face_detector.h"
+#include "tracking/problem/track_summary.h"
 
 namespace bodyloom {
 
@@ -26,6 +27,10 @@ nlohmann::ordered_json ToJson(const RoomPhysics& room);
 /// Adds "hands": {"looked_for", "found", "hidden", "too_small", "not_seen", "at_other_hand"}, "faces": the same, and
 /// "hands_and_faces_seconds"; or "hands_not_looked_for": why. Nothing when they were not wanted.
 void AddHandsAndFaces(const HandsAndFaceSummary& summary, nlohmann::ordered_json* report);
+
+/// Adds "left_hand", "right_hand" and "head", where hands and faces were given: {"fitted", "why", "frames_seen",
+/// "iterations", "median_px", "size"}.
+void AddFittedParts(const TrackSequenceSummary& summary, nlohmann::ordered_json* report);
 
 /// Writes a report, whole or not at all; an empty path: none.
 void WriteReport(const std::string& path, const nlohmann::ordered_json& report);

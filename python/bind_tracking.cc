@@ -16,6 +16,7 @@
 #include "pipelines/track/solve_track.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/keypoints_object.h"
 #include "python/python_callbacks.h"
 #include "python/track_object.h"
 
@@ -34,6 +35,8 @@ What was seen
   begin_s, end_s  seconds of the video, or of the keypoints
   rotate          turn the video clockwise by 90, 180 or 270 degrees, or "auto", so that people are upright
   captured_fps    slow motion: frames a second at which the video was filmed
+  hands           "auto", "on": hands and face of the keypoints, or found in the video, bend the fingers of a body that
+                  has them and turn the head; "off": those of the keypoints, by a body with fingers
 The camera
   camera          Camera, or a calibration file of which `view` names the camera
   focal_px        of a centred camera without distortion, pixels
@@ -43,7 +46,7 @@ The camera
                   or focal_px is given, else unknown-focal
   image_size      (width, height), when nothing else gives it
 What else is known
-  body            Body, or a file; None: the built-in one
+  body            Body, or a file; None: the built-in one; "hands": that with fingers
   stature_m       of the person; from it distances follow
   init            poses of another system to start from and to stay near by init_weight
   prior, lifter   files of weights, or "none"; None: built in
@@ -64,13 +67,13 @@ constexpr const char* kSyntheticClipDoc = R"(A clip with known truth, made on th
 The built-in body walks, turns, waves and kicks for `frames` frames at `fps`, seen by a camera of `image_size` pixels;
 its 2D joints carry a detector's noise and gaps. The same arguments give the same bytes.)";
 
-using KeypointsArgument = std::variant<std::shared_ptr<KeypointSequence>, Path>;
+using KeypointsArgument = std::variant<std::shared_ptr<PersonKeypoints>, std::shared_ptr<KeypointSequence>, Path>;
 
 /// Request and inputs made of the Python arguments.
 struct TrackArguments {
   TrackRequest request;
   GivenInMemory given;
-  std::optional<KeypointSequence> keypoints;
+  std::optional<PersonKeypoints> keypoints;
   std::string name;
 };
 
@@ -85,11 +88,19 @@ void TakeKeypoints(const std::optional<KeypointsArgument>& argument, TrackArgume
                  "view: names a camera of files, found keypoints in memory");
   BODYLOOM_CHECK(request.person == 0 && request.fps == 0 && request.convention.empty(),
                  "person, fps and convention are of a file of detections, found keypoints in memory");
-  arguments->keypoints = *std::get<std::shared_ptr<KeypointSequence>>(*argument);
+  PersonKeypoints& person = arguments->keypoints.emplace();
+  if (const auto* with_hands = std::get_if<std::shared_ptr<PersonKeypoints>>(&*argument)) {
+    person = **with_hands;
+  } else {
+    static_cast<KeypointSequence&>(person) = *std::get<std::shared_ptr<KeypointSequence>>(*argument);
+  }
 }
 
 std::shared_ptr<TrackObject> RunTrack(TrackArguments arguments, const py::object& progress) {
-  if (arguments.keypoints) arguments.given.keypoints = &*arguments.keypoints;
+  if (arguments.keypoints) {
+    arguments.given.keypoints = &*arguments.keypoints;
+    arguments.given.hands_and_face = &arguments.keypoints->hands_and_face;
+  }
   const TrackRequest& request = arguments.request;
   CheckThreads(request.solve.num_threads);
   const std::shared_ptr<const BodyModel> body = BodyToKeep(request, &arguments.given);
@@ -144,7 +155,7 @@ void BindTracking(py::module_& module) {
          const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
          const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
          std::optional<double> end_s, const TurnArgument& rotate, std::optional<double> captured_fps,
-         const py::object& progress) {
+         const std::string& hands, const py::object& progress) {
         TrackArguments arguments;
         TrackRequest& request = arguments.request;
         request.dense = TextOf(dense);
@@ -172,6 +183,7 @@ void BindTracking(py::module_& module) {
         request.lifter = TextOf(lifter);
         request.live_lag = live_lag;
         request.detector = DetectorFrom(detector, pose_model, box_model, models);
+        request.detector.hands_and_faces = HandsAndFaceChoiceNamed(hands);
         request.detect_rate = PositiveOr0(detect_rate, "detect_rate");
         request.use_mask = mask;
         request.from_s = begin_s;
@@ -212,7 +224,8 @@ void BindTracking(py::module_& module) {
       py::arg("detector") = "heavy", py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(),
       py::arg("models") = py::none(), py::arg("detect_rate") = py::none(), py::arg("mask") = true,
       py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("rotate") = 0,
-      py::arg("captured_fps") = py::none(), py::arg("progress") = py::none(), kTrackFunctionDoc);
+      py::arg("captured_fps") = py::none(), py::arg("hands") = "off", py::arg("progress") = py::none(),
+      kTrackFunctionDoc);
   module.def("synthetic_clip", &SyntheticClip, py::arg("frames") = 180, py::kw_only(), py::arg("fps") = 30.0,
              py::arg("image_size") = std::pair(960, 720), py::arg("seed") = 1, py::arg("elevation_deg") = 8.0,
              py::call_guard<py::gil_scoped_release>(), kSyntheticClipDoc);

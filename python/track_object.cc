@@ -7,6 +7,7 @@
 
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/motion/track_io.h"
+#include "pipelines/body_of_track.h"
 
 namespace bodyloom::python {
 namespace {
@@ -38,7 +39,8 @@ std::shared_ptr<const BodyModel> BodyFrom(const std::optional<BodyArgument>& arg
 }
 
 std::shared_ptr<const BodyModel> BodyOf(const TrackObject& track, const std::optional<BodyArgument>& argument) {
-  return argument || track.body == nullptr ? BodyFrom(argument) : track.body;
+  if (argument) return BodyFrom(argument);
+  return track.body != nullptr ? track.body : BodyOfTrack("", track.track);
 }
 
 std::shared_ptr<TrackObject> TrackFrom(const TrackArgument& argument) {

@@ -8,6 +8,7 @@
 #include "apps/neural/score_options.h"
 #include "apps/progress.h"
 #include "apps/shown_motion_options.h"
+#include "apps/usage_error.h"
 
 namespace bodyloom {
 namespace {
@@ -90,7 +91,7 @@ void AddAnimateFromPhoto(CLI::App* verb, AnimateFromPhotoArguments* options) {
   AddPhotoOptions(verb, &request);
   verb->add_option("--track", request.track, "The motion: a track, .npz");
   verb->add_option("--out", request.out, "The video, .mp4");
-  verb->add_option("--body", request.photo.body, "The tracks' body (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", request.photo.body, BodyHelp("The tracks' body"));
   verb->add_option("--background", options->background, kPhotoBackgroundHelp)->capture_default_str();
   verb->add_flag("--full-size", request.full_size, kFullSizeHelp);
   verb->add_option("--json", request.json, "Report with times");

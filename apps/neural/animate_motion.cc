@@ -10,6 +10,7 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/progress.h"
 #include "apps/shown_motion_options.h"
+#include "apps/usage_error.h"
 #include "pipelines/animate/motion_errors.h"
 #include "pipelines/neural/motion/animate_motion.h"
 
@@ -62,7 +63,7 @@ void AddAnimateMotion(CLI::App& animate, Action* action) {
                    "With --data: what its pixels show of the body, a folder of DensePose's IUV images, or \"own\", the "
                    "dataset's (default: the tracked body)");
   verb->add_option("--out", request->out, "The video, .mp4")->required();
-  verb->add_option("--body", request->body, "The track's body (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", request->body, BodyHelp("The track's body"));
   verb->add_option("--speed", request->speed, "Plays the motion so many times as fast: clothes move differently")
       ->check(CLI::Range(0.05, 20.0))
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/score_options.h"
 #include "apps/progress.h"
+#include "apps/usage_error.h"
 
 namespace bodyloom {
 
@@ -24,7 +25,7 @@ void AddScorePerson(CLI::App& animate, Action* action) {
   verb->add_option("--texture-size", request->texture_size, "Texels a side")
       ->check(CLI::Range(64, 8192))
       ->capture_default_str();
-  verb->add_option("--body", request->body, "The people's body (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", request->body, BodyHelp("The people's body"));
   verb->add_option("--sheet", request->sheet, "Contact sheet, a row a person: photo, what it shows, result, truth");
   verb->add_option("--json", request->json, "Report");
   verb->add_option("--threads", request->threads, "0: all cores")->check(CLI::Range(0, 1024));

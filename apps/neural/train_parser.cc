@@ -9,6 +9,7 @@
 #include "apps/neural/training_options.h"
 #include "apps/neural/training_report.h"
 #include "apps/progress.h"
+#include "apps/usage_error.h"
 #include "data_tools/datasets/single_person_dataset.h"
 #include "pipelines/neural/parser/train_clothes_parser.h"
 
@@ -43,7 +44,7 @@ void AddTrainParser(CLI::App& train, Action* action) {
   verb->add_option("--data", request->data, "A multi-person dataset (bodyloom synth-people)")->required();
   verb->add_option("--out", request->out, "Folder of the run: config.json, checkpoint.bin, metrics.csv, parser.npz")
       ->required();
-  verb->add_option("--body", request->body, "The people's body (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", request->body, BodyHelp("The people's body"));
   verb->add_option("--size", request->size, "Pixels of the windows that people are shown in")
       ->check(CLI::Range(64, 2048))
       ->capture_default_str();

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/usage_error.h"
 #include "pipelines/clip_span.h"
 
 namespace bodyloom {
@@ -15,7 +16,7 @@ void AddPeopleOptions(CLI::App* verb, std::string* data, std::string* out, std::
   verb->add_option("--data", *data, "A multi-person dataset (bodyloom synth-people), or a single-person dataset")
       ->required();
   AddRunFolderOption(verb, out);
-  verb->add_option("--body", *body, "The people's body (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", *body, BodyHelp("The people's body"));
 }
 
 void AddStepOptions(CLI::App* verb, int* steps, int* batch, double* learning_rate, const char* batch_help) {
@@ -54,7 +55,7 @@ void AddMotionDataOptions(CLI::App* verb, MotionDataRequest* request) {
                    "A single-person dataset (bodyloom synth-person), or a video or folder of images")
       ->required();
   verb->add_option("--track", request->track, "The clip's track (default: the single-person dataset's own)");
-  verb->add_option("--body", request->body, "The track's body (default: the built-in body; hands: with fingers)");
+  verb->add_option("--body", request->body, BodyHelp("The track's body"));
   verb->add_option("--iuv", request->iuv,
                    "What pixels show of the body by estimates from the images, as in the paper's comparisons: a folder "
                    "of DensePose's IUV images, or \"own\", the single-person dataset's (default: the tracked body)");

@@ -11,7 +11,7 @@ usage: hands.py COMMAND POSE2SIM DANCE OUT
 Two cameras: a point's distance from the other camera's epipolar line, to first order divided by the root of the sum of
 squares of its derivatives by all four pixels (Sampson's), so that independent errors of one pixel an axis give a spread of
 one pixel; relative to the hand's length, a third of its region's side, which the largest standard deviation of the
-points tells. Wrists: distance from OpenPose's. ffmpeg makes the smaller videos.
+points tells. Directions of bones by the points in metres are compared in the calibration's axes. Wrists: distance from OpenPose's. ffmpeg makes the smaller videos.
 """
 import json
 import pathlib
@@ -74,6 +74,23 @@ def epipolar(cameras, affines, pixels):
     return (b * line).sum(-1) / np.sqrt((line[..., :2] ** 2).sum(-1) + (other[..., :2] ** 2).sum(-1)) * focal
 
 
+def directions(detections, camera, affine):
+    """Directions of the 20 bones (T×2×20×3) by the points in metres, in the calibration's axes."""
+    z = np.load(detections)
+    metres = np.full((len(z["timestamps"]), 2, 21, 3), np.nan)
+    pixels = metres[..., :2].copy()
+    at = z["people_frame"][z["hand_person"]], z["hand_side"]
+    metres[at], pixels[at] = z["hand_metres"], z["hand_keypoints"][..., :2]
+    bones = np.stack([metres[..., k, :] - metres[..., 0 if k % 4 == 1 else k - 1, :] for k in range(1, 21)], -2)
+    bones /= np.linalg.norm(bones, axis=-1, keepdims=True)
+    ray = normalised(camera, affine, pixels[..., 0, :])[0]
+    ray /= np.linalg.norm(ray, axis=-1, keepdims=True)
+    x, y, z = np.moveaxis(ray, -1, 0)
+    K = np.stack([0 * x, 0 * x, x, 0 * x, 0 * x, y, -x, -y, 0 * x], -1).reshape(ray.shape[:-1] + (3, 3))
+    from_ray = np.eye(3) + K + K @ K / (1 + z)[..., None, None]  # the shortest turn from the optical axis to the ray
+    return np.einsum("...ij,...bj->...bi", from_ray, bones) @ rotation(camera["rvec"])
+
+
 def spread(values):
     values = np.abs(values[np.isfinite(values)])
     return 1.4826 * np.median(values) if values.size else np.nan
@@ -105,6 +122,16 @@ def main():
         print(f"  {what:15} {spread(d / size):.3f}   {spread(d / s):.2f}, {np.sqrt(np.nanmean((d / s) ** 2)):.2f}")
     print(f"  {'all':15} {spread(distance / size):.3f}   {spread(distance / sigma):.2f}, "
           f"{np.sqrt(np.nanmean((distance / sigma) ** 2)):.2f}")
+
+    cameras = [calibration[f"cam_{name[3:]}"] for name in names]
+    first, second = (directions(out / f"{name}.npz", c, affines[name]) for name, c in zip(names, cameras))
+    off = (first - second) @ rotation(cameras[0]["rvec"]).T / np.sqrt(2)
+    print("directions of bones, of one camera, along x, y, z of the first: spread, root mean square")
+    print("  " + ", ".join(f"{spread(off[..., c]):.2f} {np.sqrt(np.nanmean(off[..., c] ** 2)):.2f}" for c in range(3)))
+    same = {lag: np.nansum(off[lag:] * off[:-lag]) /
+            np.nansum((off[lag:] ** 2 + off[:-lag] ** 2) / 2 * np.isfinite(off[lag:] * off[:-lag]))
+            for lag in (1, 2, 4, 8, 16)}
+    print("  correlation after frames: " + ", ".join(f"{lag}: {value:.2f}" for lag, value in same.items()))
 
     print("wrists against OpenPose's, median px: the hand's, the body's")
     for name in names:

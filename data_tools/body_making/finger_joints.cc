@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/body_making/finger_joints.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -11,14 +10,13 @@
 #include <utility>
 
 #include "data_tools/body_making/left_half_arrays.h"
+#include "data_tools/body_making/pose_correctives.h"
 #include "geometry/base/check.h"
 #include "geometry/body/hand_skeleton.h"
-#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kThumb = 4;  // in FingerNames()
@@ -48,13 +46,6 @@ constexpr double kKnuckleSpread_m = 0.006;
 constexpr double kThenarInner_m = 0.013, kThenarOuter_m = 0.032;
 constexpr int kSmoothings = 4;
 constexpr int kMaxInfluences = 4;
-
-/// Growth of a joint at a right angle in the middle of its step, which makes up for flesh that the fold swallows.
-constexpr double kSwelling = 0.12;
-constexpr double kDamping = 0.03;  // of the inverse of blended rotations
-constexpr double kRidgePerSample = 0.003;
-constexpr double kSmallestBlock_m = 1e-4;
-constexpr double kDegree = M_PI / 180;
 
 /// 0 below −half_width, 1 above half_width, smooth between.
 double Step(double x, double half_width) {
@@ -343,123 +334,6 @@ std::vector<WeightedIndices> DivideWeights(const BodyModelData& body, const Left
   return rows;
 }
 
-std::vector<Matrix3d> SampleRotations(int i, const Matrix3d& axes) {
-  std::vector<double> flexion_deg = {-15, 15, 30, 45, 60, 75, 90, 105}, radial_deg = {0};
-  if (i % 3 == 0) radial_deg = {-20, 0, 20};
-  if (i == 3 * kThumb) {
-    flexion_deg = {-20, 0, 20, 40};
-    radial_deg = {-20, 1, 20, 40, 60};
-  }
-  std::vector<Matrix3d> rotations;
-  for (const double flexion : flexion_deg) {
-    for (const double radial : radial_deg) {
-      rotations.push_back(RotationFromAxisAngle(axes.col(0) * flexion * kDegree + axes.col(1) * radial * kDegree));
-    }
-  }
-  return rotations;
-}
-
-/// The 3×9 block of a vertex at `x` from joint i, of which it follows the share `weight`: least squares over
-/// `rotations` of the offset whose blend ((1 − w) I + w R)(x + offset) lies where R turned by the share w of its angle
-/// takes x.
-class CorrectiveFit {
- public:
-  explicit CorrectiveFit(std::vector<Matrix3d> rotations) : rotations_(std::move(rotations)) {
-    features_.resize(9, static_cast<Eigen::Index>(rotations_.size()));
-    for (size_t s = 0; s < rotations_.size(); ++s) {
-      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> entries = rotations_[s] - Matrix3d::Identity();
-      features_.col(static_cast<Eigen::Index>(s)) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(entries.data());
-      axis_angles_.emplace_back(AxisAngleFromRotation(rotations_[s]));
-    }
-    const auto samples = static_cast<double>(rotations_.size());
-    normal_.compute(features_ * features_.transpose() +
-                    kRidgePerSample * samples * Eigen::Matrix<double, 9, 9>::Identity());
-  }
-
-  [[nodiscard]] CorrectiveBlock Block(int joint, const Vector3d& x, double weight) const {
-    Eigen::Matrix<double, 9, 3> right = Eigen::Matrix<double, 9, 3>::Zero();
-    for (size_t s = 0; s < rotations_.size(); ++s) {
-      const Matrix3d blend = (1 - weight) * Matrix3d::Identity() + weight * rotations_[s];
-      const double swell = 1 + kSwelling * 4 * weight * (1 - weight) * (1 - std::cos(axis_angles_[s].norm()));
-      const Vector3d missing = swell * (RotationFromAxisAngle(weight * axis_angles_[s]) * x) - blend * x;
-      const Matrix3d damped = blend.transpose() * blend + kDamping * Matrix3d::Identity();
-      right +=
-          features_.col(static_cast<Eigen::Index>(s)) * damped.ldlt().solve(blend.transpose() * missing).transpose();
-    }
-    const Eigen::Matrix<double, 9, 3> solution = normal_.solve(right);
-    CorrectiveBlock block;
-    block.joint = joint;
-    for (int c = 0; c < 3; ++c) {
-      for (int k = 0; k < 9; ++k) {
-        block.values[9 * c + k] =
-            static_cast<float>(kCorrectiveUnit_m * std::round(solution(k, c) / kCorrectiveUnit_m));
-      }
-    }
-    return block;
-  }
-
- private:
-  std::vector<Matrix3d> rotations_;
-  std::vector<Vector3d> axis_angles_;
-  Eigen::Matrix<double, 9, Eigen::Dynamic> features_;
-  Eigen::LDLT<Eigen::Matrix<double, 9, 9>> normal_;
-};
-
-/// Of the left fingers, by left vertex.
-std::map<int, std::vector<CorrectiveBlock>> FitCorrectives(const BodyModelData& body, const HandSkeleton& axes,
-                                                           const std::vector<WeightedIndices>& weights,
-                                                           const std::vector<int>& left_vertices,
-                                                           const std::array<Finger, 5>& fingers) {
-  std::map<int, std::vector<CorrectiveBlock>> blocks;
-  for (int i = 0; i < kHandJoints; ++i) {
-    const CorrectiveFit fit(SampleRotations(i, axes.axes[i]));
-    for (size_t r = 0; r < left_vertices.size(); ++r) {
-      double share = 0;
-      for (const auto& [joint, weight] : weights[r]) {
-        const int j = joint - kFirstFingerJoint;
-        if (j >= i && j < i - i % 3 + 3) share += weight;
-      }
-      if (share < 1e-3 || share > 1 - 1e-3) continue;
-      const int v = left_vertices[r];
-      const Vector3d x = body.v_template.row(v).transpose() - fingers[i / 3].at[i % 3];
-      const CorrectiveBlock block = fit.Block(kFirstFingerJoint + i, x, share);
-      if (std::any_of(block.values.begin(), block.values.end(),
-                      [](float value) { return std::abs(value) >= kSmallestBlock_m; })) {
-        blocks[v].push_back(block);
-      }
-    }
-  }
-  return blocks;
-}
-
-void PutCorrectives(const RefinedCage& refined, const std::map<int, std::vector<CorrectiveBlock>>& left,
-                    const std::vector<int>& joint_mirror, BodyModelData* body) {
-  std::map<int, std::vector<CorrectiveBlock>> added = left;
-  for (const auto& [v, blocks] : left) {
-    for (const CorrectiveBlock& block : blocks) {
-      added[refined.mirror[v]].push_back(MirrorCorrective(block, joint_mirror[block.joint]));
-    }
-  }
-  PoseCorrectives all;
-  all.begin.push_back(0);
-  const auto append = [&](int joint, const float* values) {
-    all.joint.push_back(joint);
-    all.block.insert(all.block.end(), values, values + 27);
-  };
-  for (int v = 0; v < static_cast<int>(body->v_template.rows()); ++v) {
-    for (int k = body->posedirs.begin[v]; k < body->posedirs.begin[v + 1]; ++k) {
-      if (body->posedirs.joint[k] < kFirstFingerJoint) {
-        append(body->posedirs.joint[k], &body->posedirs.block[size_t{27} * size_t(k)]);
-      }
-    }
-    if (const auto found = added.find(v); found != added.end()) {
-      for (const CorrectiveBlock& block : found->second) append(block.joint, block.values.data());
-    }
-    all.begin.push_back(static_cast<int>(all.joint.size()));
-  }
-  body->posedirs = std::move(all);
-}
-
 }  // namespace
 
 void AddFingerJoints(const Cage& cage, const RefinedCage& refined, BodyModelData* body) {
@@ -504,8 +378,11 @@ void AddFingerJoints(const Cage& cage, const RefinedCage& refined, BodyModelData
     body->landmarks.insert(body->landmarks.end(), landmarks.begin(), landmarks.end());
   }
   const HandSkeleton axes = *FindHand(BodyModel(*body), HandSide::kLeft);
-  PutCorrectives(refined, FitCorrectives(*body, axes, weights, refined.left_vertices, hand.fingers()), joint_mirror,
-                 body);
+  std::array<Vector3d, kHandJoints> places;
+  for (int i = 0; i < kHandJoints; ++i) places[size_t(i)] = hand.fingers()[i / 3].at[i % 3];
+  AddCorrectives(refined, joint_mirror,
+                 FitFingerCorrectives(*body, axes, kFirstFingerJoint, places, weights, refined.left_vertices),
+                 kFirstFingerJoint, &body->posedirs);
 }
 
 }  // namespace bodyloom

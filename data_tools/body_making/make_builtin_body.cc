@@ -2,12 +2,14 @@
 #include "data_tools/body_making/make_builtin_body.h"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 
 #include "data_tools/body_making/body_charts.h"
 #include "data_tools/body_making/cage.h"
 #include "data_tools/body_making/finger_joints.h"
 #include "data_tools/body_making/left_half_arrays.h"
+#include "data_tools/body_making/pose_correctives.h"
 #include "data_tools/body_making/refined_cage.h"
 #include "data_tools/body_making/subdivision.h"
 #include "data_tools/formats/atomic_file.h"
@@ -68,29 +70,6 @@ void FillRegressor(const RefinedCage& refined, const std::vector<int>& joint_mir
   body->J_regressor.resize(static_cast<Eigen::Index>(joint_mirror.size()),
                            static_cast<Eigen::Index>(refined.mirror.size()));
   body->J_regressor.setFromTriplets(entries.begin(), entries.end());
-}
-
-void FillCorrectives(const RefinedCage& refined, const std::vector<int>& joint_mirror,
-                     const std::vector<std::vector<CorrectiveBlock>>& left_blocks, BodyModelData* body) {
-  std::vector<std::vector<CorrectiveBlock>> blocks(refined.mirror.size());
-  for (size_t i = 0; i < refined.left_vertices.size(); ++i) {
-    const int v = refined.left_vertices[i];
-    blocks[v] = left_blocks[i];
-    if (refined.mirror[v] == v) continue;
-    std::vector<CorrectiveBlock>& mirrored = blocks[refined.mirror[v]];
-    for (const CorrectiveBlock& block : left_blocks[i]) {
-      mirrored.push_back(MirrorCorrective(block, joint_mirror[block.joint]));
-    }
-    std::sort(mirrored.begin(), mirrored.end(), [](const auto& a, const auto& b) { return a.joint < b.joint; });
-  }
-  body->posedirs.begin.push_back(0);
-  for (const auto& of_vertex : blocks) {
-    for (const CorrectiveBlock& block : of_vertex) {
-      body->posedirs.joint.push_back(block.joint);
-      body->posedirs.block.insert(body->posedirs.block.end(), block.values.begin(), block.values.end());
-    }
-    body->posedirs.begin.push_back(static_cast<int>(body->posedirs.joint.size()));
-  }
 }
 
 void FillLandmarks(const RefinedCage& refined, const LeftHalfArrays& arrays, BodyModelData* body) {
@@ -172,7 +151,11 @@ BodyModelData MakeBuiltinBody(const BuiltinBodySources& sources, MakeBuiltinBody
   body.faces = TrianglesOfQuads(refined.quads);
   FillWeights(refined, joint_mirror, arrays.weights, &body);
   FillRegressor(refined, joint_mirror, left_joints, arrays.regressor, &body);
-  FillCorrectives(refined, joint_mirror, arrays.correctives, &body);
+  std::map<int, std::vector<CorrectiveBlock>> left_correctives;
+  for (size_t i = 0; i < refined.left_vertices.size(); ++i) {
+    left_correctives[refined.left_vertices[i]] = arrays.correctives[i];
+  }
+  AddCorrectives(refined, joint_mirror, left_correctives, 0, &body.posedirs);
   FillLandmarks(refined, arrays, &body);
   try {
     FillCharts(cage, refined, arrays, sources.cage_name, &body);

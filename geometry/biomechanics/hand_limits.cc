@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/base/check.h"
 #include "geometry/math/rotation.h"
 
 namespace bodyloom {
@@ -50,40 +49,16 @@ Matrix3d HandRotation(const HandSkeleton& hand, int i, const Vector3d& angles) {
   return RotationFromAxisAngle(hand.axes.at(joint) * (angles - Vector3d(hand.rest_flexion[joint], 0, 0)));
 }
 
-void HandLimitResiduals(const HandSkeleton& hand, std::span<const Matrix3d> rotations, const HandLimitOptions& options,
-                        Eigen::Matrix<double, kHandLimitRows, 1>* residuals,
-                        Eigen::Matrix<double, kHandLimitRows, 3 * kHandJoints>* jacobian) {
-  BODYLOOM_CHECK(rotations.size() == kHandJoints, "hand limits: ", rotations.size(), " rotations, expected ",
-                 kHandJoints);
-  residuals->setZero();
-  if (jacobian != nullptr) jacobian->setZero();
-  std::array<double, kHandJoints> flexion{};
-  std::array<Eigen::RowVector3d, kHandJoints> d_flexion;
+void HandLimitResiduals(const HandAngleVector& angles, HandAngleVector* residuals, HandAngleVector* slopes) {
   for (int i = 0; i < kHandJoints; ++i) {
-    const Matrix3d& R = rotations[size_t(i)];
-    const Vector3d angles = HandAngles(hand, i, R);
-    Matrix3d d_angles = Matrix3d::Zero();
-    if (jacobian != nullptr) {
-      d_angles = hand.axes[size_t(i)].transpose() * RightJacobianInverse(AxisAngleFromRotation(R));
-    }
-    flexion[size_t(i)] = angles[0];
-    d_flexion[size_t(i)] = d_angles.row(0);
     const FingerJointRange& range = HandJointRanges()[size_t(i)];
     const std::array<AngleRange, 3> by_axis = {range.flexion, range.radial, range.twist};
     for (int k = 0; k < 3; ++k) {
-      const double inside = std::clamp(angles[k], by_axis[size_t(k)].low, by_axis[size_t(k)].high);
-      if (angles[k] == inside) continue;
-      (*residuals)[3 * i + k] = (angles[k] - inside) / options.sigma_rad;
-      if (jacobian != nullptr) jacobian->block<1, 3>(3 * i + k, 3 * i) = d_angles.row(k) / options.sigma_rad;
+      const double angle = angles[3 * i + k],
+                   inside = std::clamp(angle, by_axis[size_t(k)].low, by_axis[size_t(k)].high);
+      (*residuals)[3 * i + k] = (angle - inside) / kHandLimitSigma;
+      if (slopes != nullptr) (*slopes)[3 * i + k] = angle == inside ? 0 : 1 / kHandLimitSigma;
     }
-  }
-  for (int f = 0; f < kThumbOfHand; ++f) {
-    const int row = 3 * kHandJoints + f;
-    const auto pip = size_t(3 * f + 1), dip = size_t(3 * f + 2);
-    (*residuals)[row] = (flexion[dip] - kDipByPip * flexion[pip]) / options.coupling_sigma_rad;
-    if (jacobian == nullptr) continue;
-    jacobian->block<1, 3>(row, 3 * f * 3 + 6) = d_flexion[dip] / options.coupling_sigma_rad;
-    jacobian->block<1, 3>(row, 3 * f * 3 + 3) = -kDipByPip * d_flexion[pip] / options.coupling_sigma_rad;
   }
 }
 

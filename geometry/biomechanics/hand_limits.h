@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <span>
 
 #include "geometry/body/hand_skeleton.h"
 
@@ -40,20 +39,14 @@ Eigen::Vector3d HandAngles(const HandSkeleton& hand, int i, const Eigen::Matrix3
 /// Its inverse.
 Eigen::Matrix3d HandRotation(const HandSkeleton& hand, int i, const Eigen::Vector3d& angles);
 
-struct HandLimitOptions {
-  double sigma_rad = 0.05;          ///< of the excess over a range
-  double coupling_sigma_rad = 0.2;  ///< of DIP − ⅔ PIP; people can hold it 10° off
-};
+inline constexpr int kHandAngles = 3 * kHandJoints;
+/// The angles of a hand, 3i + k: angle k of joint i, radians.
+using HandAngleVector = Eigen::Matrix<double, kHandAngles, 1>;
 
-/// Rows 3i + k: angle k of joint i beyond its range by sigma; rows 45 to 48: DIP − ⅔ PIP of index, middle, pinky and
-/// ring finger, by coupling_sigma.
-inline constexpr int kHandLimitRows = 3 * kHandJoints + 4;
+inline constexpr double kHandLimitSigma = 0.05;  ///< radians, of the excess over a range
 
-/// `rotations`: 15 local ones, in the hand's order. `residuals` has kHandLimitRows entries. `jacobian`, unless null, is
-/// their derivative by right increments R exp(δ), columns 3i to 3i + 2 for joint i. Throws std::invalid_argument for
-/// another number of rotations.
-void HandLimitResiduals(const HandSkeleton& hand, std::span<const Eigen::Matrix3d> rotations,
-                        const HandLimitOptions& options, Eigen::Matrix<double, kHandLimitRows, 1>* residuals,
-                        Eigen::Matrix<double, kHandLimitRows, 3 * kHandJoints>* jacobian);
+/// The excess of each angle over its range by kHandLimitSigma, 0 inside. `slopes`, unless null, are the derivatives by
+/// the angles themselves: 1 / kHandLimitSigma, or 0.
+void HandLimitResiduals(const HandAngleVector& angles, HandAngleVector* residuals, HandAngleVector* slopes);
 
 }  // namespace bodyloom

@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/base/check.h"
 #include "geometry/base/hash_random.h"
-#include "geometry/math/rotation.h"
 
 namespace bodyloom {
 namespace {
 
-using AngleVector = Eigen::Matrix<double, kHandAngles, 1>;
 using AngleMatrix = Eigen::Matrix<double, kHandAngles, kHandAngles>;
 
 constexpr int kPriorHands = 8192, kThumbOfPrior = 4;
@@ -24,16 +21,16 @@ double Within(const AngleRange& range, double part, double share) {
   return middle + half * (2 * share - 1);
 }
 
-AngleVector SampleHand(int sample) {
+HandAngleVector SampleHand(int sample) {
   HashRandom random(7, {static_cast<uint64_t>(sample)});
   const std::array<FingerJointRange, kHandJoints>& ranges = HandJointRanges();
-  AngleVector angles = AngleVector::Zero();
+  HandAngleVector angles = HandAngleVector::Zero();
   const auto put = [&](int joint, int axis, const AngleRange& range, double value) {
     angles[3 * joint + axis] = std::clamp(value, range.low, range.high);
   };
   const double grip = random.Uniform();
   for (int f = 0; f < kThumbOfPrior; ++f) {
-    const double closed = 0.75 * grip + 0.25 * random.Uniform();
+    const double closed = (grip + 2 * random.Uniform()) / 3;
     const double knuckle = 0.5 * closed + 0.5 * random.Uniform();
     const double pip = kPriorDegree * (5 + 95 * closed);
     const double dip = kDipByPip * pip + 8 * kPriorDegree * random.Normal();
@@ -58,7 +55,7 @@ HandPrior MakeHandPrior() {
   prior.mean.setZero();
   AngleMatrix covariance = AngleMatrix::Zero();
   for (int s = 0; s < kPriorHands; ++s) {
-    const AngleVector x = SampleHand(s);
+    const HandAngleVector x = SampleHand(s);
     prior.mean += x / kPriorHands;
     covariance += x * x.transpose() / kPriorHands;
   }
@@ -75,22 +72,6 @@ HandPrior MakeHandPrior() {
 const HandPrior& BuiltinHandPrior() {
   static const HandPrior prior = MakeHandPrior();
   return prior;
-}
-
-void HandPriorResiduals(const HandPrior& prior, const HandSkeleton& hand, std::span<const Eigen::Matrix3d> rotations,
-                        AngleVector* residuals, AngleMatrix* jacobian) {
-  BODYLOOM_CHECK(rotations.size() == kHandJoints, "hand prior: ", rotations.size(), " rotations, expected ",
-                 kHandJoints);
-  const AngleMatrix whitening = prior.sigma.cwiseInverse().asDiagonal() * prior.components.transpose();
-  AngleVector x;
-  for (int i = 0; i < kHandJoints; ++i) {
-    const Eigen::Matrix3d& R = rotations[size_t(i)];
-    x.segment<3>(3 * i) = HandAngles(hand, i, R);
-    if (jacobian == nullptr) continue;
-    jacobian->middleCols<3>(3 * i) = whitening.middleCols<3>(3 * i) * hand.axes[size_t(i)].transpose() *
-                                     RightJacobianInverse(AxisAngleFromRotation(R));
-  }
-  *residuals = whitening * (x - prior.mean);
 }
 
 }  // namespace bodyloom

@@ -3,7 +3,7 @@
 /// motion, no licensed data. It says which hand is likely where nothing is seen: half closed, fingers bent alike, last
 /// joints following the middle ones.
 ///
-/// Recipe, for each of 8,192 hands: a grip g in [0, 1]; each finger closes by c = ¾ g + ¼ u with its own u in [0, 1].
+/// Recipe, for each of 8,192 hands: a grip g in [0, 1]; each finger closes by c = ⅓ g + ⅔ u with its own u in [0, 1].
 ///   MCP flexion   −10° to 80° by ½ c + ½ u′, with another u′ of the finger's own
 ///   PIP flexion   5° to 100° by c;  DIP ⅔ PIP, standard deviation 8°
 ///   radial        within ⅔ of the range, times 1 − c: closed fingers lie side by side
@@ -14,30 +14,20 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 
 #include "geometry/biomechanics/hand_limits.h"
 
 namespace bodyloom {
 
-inline constexpr int kHandAngles = 3 * kHandJoints;
-
-/// Over x = the angles of HandAngles(), radians, 3i + k: angle k of joint i.
+/// Over the angles of HandAngles().
 struct HandPrior {
-  Eigen::Matrix<double, kHandAngles, 1> mean;
+  HandAngleVector mean;
   /// Orthonormal principal components by falling standard deviation, as columns, and these, radians.
   Eigen::Matrix<double, kHandAngles, kHandAngles> components;
-  Eigen::Matrix<double, kHandAngles, 1> sigma;
+  HandAngleVector sigma;
 };
 
 /// Made once; the same on every machine.
 const HandPrior& BuiltinHandPrior();
-
-/// Whitened residuals componentsᵀ (x − mean) / sigma, whose squares sum to the Mahalanobis distance, of 15 local
-/// rotations in the hand's order. `jacobian`, unless null, is their derivative by right increments R exp(δ), columns 3i
-/// to 3i + 2 for joint i. Throws std::invalid_argument for another number of rotations.
-void HandPriorResiduals(const HandPrior& prior, const HandSkeleton& hand, std::span<const Eigen::Matrix3d> rotations,
-                        Eigen::Matrix<double, kHandAngles, 1>* residuals,
-                        Eigen::Matrix<double, kHandAngles, kHandAngles>* jacobian);
 
 }  // namespace bodyloom

@@ -21,8 +21,8 @@ std::array<std::string, kHandJoints> JointNamesOfHand(const std::string& prefix)
   return names;
 }
 
-std::array<std::string, kHandLandmarks> LandmarkNamesOfHand(const std::string& prefix) {
-  std::array<std::string, kHandLandmarks> names = {prefix + "wrist"};
+std::array<std::string, kHandPoints> LandmarkNamesOfHand(const std::string& prefix) {
+  std::array<std::string, kHandPoints> names = {prefix + "wrist"};
   int i = 1;
   for (const char* finger : {"thumb", "index", "middle", "ring", "pinky"}) {
     const bool thumb = i == 1;
@@ -31,6 +31,16 @@ std::array<std::string, kHandLandmarks> LandmarkNamesOfHand(const std::string& p
     }
   }
   return names;
+}
+
+std::vector<std::pair<int, int>> MakeHandBones() {
+  std::vector<std::pair<int, int>> bones;
+  for (int finger = 0; finger < 5; ++finger) {
+    const int first = 1 + 4 * finger;
+    bones.emplace_back(0, first);
+    for (int k = first; k < first + 3; ++k) bones.emplace_back(k, k + 1);
+  }
+  return bones;
 }
 
 /// The joint of a body's hand at landmark i, as an index into HandJointNames(); −1 for the wrist and tips.
@@ -51,15 +61,20 @@ const std::array<std::string, kHandJoints>& HandJointNames(HandSide side) {
   return side == HandSide::kLeft ? left : right;
 }
 
-const std::array<std::string, kHandLandmarks>& HandLandmarkNames(HandSide side) {
-  static const std::array<std::string, kHandLandmarks> left = LandmarkNamesOfHand("left_"),
-                                                       right = LandmarkNamesOfHand("right_");
+const std::array<std::string, kHandPoints>& HandLandmarkNames(HandSide side) {
+  static const std::array<std::string, kHandPoints> left = LandmarkNamesOfHand("left_"),
+                                                    right = LandmarkNamesOfHand("right_");
   return side == HandSide::kLeft ? left : right;
+}
+
+std::span<const std::pair<int, int>> HandBones() {
+  static const std::vector<std::pair<int, int>> bones = MakeHandBones();
+  return bones;
 }
 
 std::vector<Landmark> HandLandmarks(const BodyModelData& body, HandSide side, const std::array<int, 5>& tip_vertices) {
   std::vector<Landmark> landmarks;
-  for (int i = 1; i < kHandLandmarks; ++i) {
+  for (int i = 1; i < kHandPoints; ++i) {
     Landmark landmark{HandLandmarkNames(side)[i], {}, {}};
     if (const int joint = JointOfLandmark(i); joint < 0) {
       landmark.vertices = {tip_vertices[i / 4 - 1]};

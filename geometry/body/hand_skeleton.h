@@ -10,7 +10,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/body/body_model.h"
@@ -20,7 +22,7 @@ namespace bodyloom {
 enum class HandSide { kLeft, kRight };
 
 inline constexpr int kHandJoints = 15;
-inline constexpr int kHandLandmarks = 21;
+inline constexpr int kHandPoints = 21;
 
 /// "index", "middle", "pinky", "ring", "thumb": joints 3i, 3i + 1 and 3i + 2 are those of the i-th.
 const std::array<std::string, 5>& FingerNames();
@@ -30,7 +32,11 @@ const std::array<std::string, kHandJoints>& HandJointNames(HandSide side);
 
 /// The names of the landmarks of a body, in the order of MediaPipe and OpenPose: left_wrist, left_thumb_cmc, _mcp, _ip,
 /// _tip, left_index_mcp, _pip, _dip, _tip, then middle, ring and pinky.
-const std::array<std::string, kHandLandmarks>& HandLandmarkNames(HandSide side);
+const std::array<std::string, kHandPoints>& HandLandmarkNames(HandSide side);
+
+/// Pairs of these landmarks that bones join, the one nearer to the wrist first: 20, each landmark but the wrist at the
+/// end of one.
+std::span<const std::pair<int, int>> HandBones();
 
 /// The 20 landmarks beyond the wrist of one side, in the order of HandLandmarkNames(): joints are the rows of the
 /// body's regressor, tips the given vertices (thumb, index, middle, ring, pinky). Throws std::invalid_argument when the

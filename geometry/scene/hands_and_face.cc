@@ -10,16 +10,6 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-std::vector<std::pair<int, int>> MakeHandBones() {
-  std::vector<std::pair<int, int>> bones;
-  for (int finger = 0; finger < 5; ++finger) {
-    const int first = 1 + 4 * finger;
-    bones.emplace_back(0, first);
-    for (int k = first; k < first + 3; ++k) bones.emplace_back(k, k + 1);
-  }
-  return bones;
-}
-
 std::vector<std::pair<int, int>> MakeFaceLines() {
   struct Curve {
     int first, last;
@@ -52,11 +42,6 @@ std::array<float, kFacePoints> FaceObservation::Unknown() {
 
 bool HandsAndFaceSequence::empty() const {
   return std::all_of(frames.begin(), frames.end(), [](const auto& frame) { return !frame || frame->empty(); });
-}
-
-std::span<const std::pair<int, int>> HandBones() {
-  static const std::vector<std::pair<int, int>> bones = MakeHandBones();
-  return bones;
 }
 
 const std::array<int, kFacePoints>& Face68Of468() {

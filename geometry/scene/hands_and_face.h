@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// 2D landmarks of a person's hands and face, beside those of the body (observations.h).
 ///
-/// A hand has 21 points, in the order that OpenPose, COCO-WholeBody, Halpe and MediaPipe share: the wrist, then of
-/// thumb, index, middle, ring and little finger each the joint nearest to the wrist, the next two and the tip. A face
-/// has the 68 points of 300-W (jaw from the right ear to the left, brows, nose, eyes, lips), in the order that
-/// OpenPose, COCO-WholeBody and Halpe share; MediaPipe's 468 contain them (Face68Of468()). Left and right are the
-/// person's.
+/// A hand has 21 points, in the order that OpenPose, COCO-WholeBody, Halpe and MediaPipe share (HandLandmarkNames(),
+/// geometry/body/hand_skeleton.h): the wrist, then of thumb, index, middle, ring and little finger each the joint
+/// nearest to the wrist, the next two and the tip. A face has the 68 points of 300-W (jaw from the right ear to the
+/// left, brows, nose, eyes, lips), in the order that OpenPose, COCO-WholeBody and Halpe share; MediaPipe's 468 contain
+/// them (Face68Of468()). Left and right are the person's.
 /// Source: OpenPose doc/02_output.md; C. Sagonas et al., 300 Faces in-the-Wild Challenge, ICCV Workshops 2013;
 /// MediaPipe face_mesh, canonical_face_model.
 #pragma once
@@ -18,11 +18,12 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/body/hand_skeleton.h"
 #include "geometry/scene/observations.h"
 
 namespace bodyloom {
 
-inline constexpr int kHandPoints = 21, kFacePoints = 68;
+inline constexpr int kFacePoints = 68;
 
 struct HandObservation {
   std::array<Keypoint, kHandPoints> points{};  ///< pixels; missing as in a KeypointSequence
@@ -65,9 +66,6 @@ struct HandsAndFaceSequence {
   /// True if no frame has a hand or a face.
   [[nodiscard]] bool empty() const;
 };
-
-/// Pairs of a hand's points that bones join: 20.
-std::span<const std::pair<int, int>> HandBones();
 
 /// Indices of the face's 68 points among MediaPipe's 468, which have the same meaning (but for the jaw, where 300-W's
 /// points follow the outline in the image, the nearest).

@@ -8,7 +8,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/observations/load_cameras.h"
@@ -17,6 +16,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/stopwatch.h"
 #include "geometry/scene/track.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 #include "pipelines/report_json.h"
 
@@ -49,7 +49,7 @@ DescribeClipReport DescribeClip(const DescribeClipRequest& request, const Pipeli
   RequireDistinct({request.track, request.body, request.cameras}, {request.out, header, request.preview, request.json});
   for (const std::string& path : {request.out, header, request.preview, request.json}) RequireWritable(path);
   const Track track = ReadTrack(request.track, MovingCamera::kTake);
-  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
+  const std::shared_ptr<const BodyModel> body = BodyOfTrack(request.body, track);
   if (!body->has_uv()) {
     throw std::runtime_error(
         (request.body.empty() ? body->name() : request.body) +

@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "data_tools/body/builtin_body.h"
 #include "data_tools/export/c3d_writer.h"
 #include "data_tools/export/camera_writers.h"
 #include "data_tools/export/export_scene.h"
@@ -29,6 +28,7 @@
 #include "geometry/math/rotation.h"
 #include "geometry/scene/track.h"
 #include "geometry/scene/track_edits.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/export/export_angles.h"
 #include "pipelines/files.h"
 #include "render/view/floor.h"
@@ -370,9 +370,9 @@ ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineC
   RequireDistinct(request.tracks, {request.out, request.events});
   RequireDistinct({request.body}, {request.out, request.events});
   CheckOtherFilesOf(request);
-  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
   std::vector<Track> tracks;
   for (const std::string& path : request.tracks) tracks.push_back(ReadTrack(path, MovingCamera::kTake));
+  const std::shared_ptr<const BodyModel> body = BodyOfTrack(request.body, tracks.front());
   std::vector<const Track*> each;
   each.reserve(tracks.size());
   for (const Track& track : tracks) each.push_back(&track);

@@ -3,12 +3,12 @@
 
 #include <stdexcept>
 
-#include "data_tools/body/builtin_body.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/observations/part_labels.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 
 namespace bodyloom {
@@ -19,7 +19,7 @@ constexpr int kFramesAtOnce = 16;      ///< of a dataset, between two reports
 
 }  // namespace
 
-AvatarClip::AvatarClip(const AvatarClipRequest& request) : request_(request), body_(BodyOrBuiltin(request.body)) {
+AvatarClip::AvatarClip(const AvatarClipRequest& request) : request_(request) {
   RequireReadable(request.data, "data");
   RequireReadable(request.track, "track");
   RequireReadable(request.mask, "mask");
@@ -32,6 +32,7 @@ AvatarClip::AvatarClip(const AvatarClipRequest& request) : request_(request), bo
   } else {
     OpenVideo();
   }
+  body_ = BodyOfTrack(request.body, track_);
   camera_of_file_ = track_.camera;
   if (track_.camera.HasDistortion()) {
     lens_.emplace(track_.camera);

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/video/image_file.h"
@@ -16,6 +15,7 @@
 #include "geometry/base/stopwatch.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/track.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 #include "pipelines/render/render_sinks.h"
 #include "pipelines/video/track_video.h"
@@ -238,7 +238,7 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const PipelineC
   const Track track = ReadTrack(request.track, MovingCamera::kTake);
   Track truth;
   if (!request.truth.empty()) truth = ReadTrack(request.truth, MovingCamera::kTake);
-  return RenderChecked(request, *BodyOrBuiltin(request.body), track, request.truth.empty() ? nullptr : &truth,
+  return RenderChecked(request, *BodyOfTrack(request.body, track), track, request.truth.empty() ? nullptr : &truth,
                        callbacks);
 }
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "data_tools/body/body_io.h"
-#include "data_tools/body/builtin_body.h"
 #include "data_tools/datasets/human36m.h"
 #include "data_tools/datasets/rich_truth.h"
 #include "data_tools/datasets/video_truth.h"
@@ -40,6 +39,7 @@
 #include "geometry/base/parallel.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/track_edits.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 
 namespace bodyloom {
@@ -329,8 +329,8 @@ Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const PipelineCall
   RequireReadableBody(request.body);
   CheckEvaluation(request, {});
   RequireDistinct({request.track, request.body}, {request.json});
-  return EvaluateChecked(request, *BodyOrBuiltin(request.body), ReadTrack(request.track, MovingCamera::kTake), {},
-                         callbacks);
+  const Track track = ReadTrack(request.track, MovingCamera::kTake);
+  return EvaluateChecked(request, *BodyOfTrack(request.body, track), track, {}, callbacks);
 }
 
 Evaluation EvaluateTrack(const EvaluateTrackRequest& request, const BodyModel& body, const Track& track,

@@ -8,7 +8,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/video/image_file.h"
@@ -17,6 +16,7 @@
 #include "geometry/base/check.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/track.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 #include "pipelines/report_json.h"
 #include "pipelines/video/track_video.h"
@@ -73,7 +73,7 @@ ExtractTextureReport ExtractTexture(const ExtractTextureRequest& request, const 
   TrackVideo video(request.video, track_of_file, NamedCamera().video_px_from_camera_px,
                    VideoOffset(request.video, track_of_file));
   Track track = video.Moved(track_of_file);
-  const std::shared_ptr<const BodyModel> body = BodyOrBuiltin(request.body);
+  const std::shared_ptr<const BodyModel> body = BodyOfTrack(request.body, track);
   if (!body->has_uv()) {
     throw std::runtime_error(request.body +
                              ": a body without UV coordinates, expected vt and ft (bodyloom body convert "

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "data_tools/body/builtin_body.h"
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "geometry/scene/observations.h"
@@ -66,6 +67,7 @@ TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& sc
     TrackSequenceInput& input = inputs.emplace_back(scene.ForTracker());
     input.keypoints = &person.keypoints;
     input.part_labels = person.mask ? &*person.mask : nullptr;
+    input.hands_and_face = person.hands_and_face.empty() ? nullptr : &person.hands_and_face;
     UsePictureVertical(lines, scene.camera_knowledge, &input);
     if (cameras.empty()) continue;
     input.camera_from_scene = &cameras[inputs.size() - 1];
@@ -107,6 +109,19 @@ ChosenPeople DetectAndChoosePeople(const TrackPeopleRequest& request, const Pipe
   people.everybody = LinkPeople(people.clip.people);
   people.chosen = ChoosePeople(request, people.clip, people.everybody);
   return people;
+}
+
+std::shared_ptr<const BodyModel> BodyFor(const TrackPeopleRequest& request, const GivenInMemory& given,
+                                         const ChosenPeople& people, std::shared_ptr<const BodyModel> body) {
+  const auto shows_hands = [&](int number) {
+    const HandsAndFaceSequence seen = HandsAndFaceOf(people.clip.people, people.everybody[size_t(number)]);
+    return std::any_of(seen.frames.begin(), seen.frames.end(), [](const auto& frame) {
+      return frame != nullptr && (frame->hands[HandsAndFace::kLeft] || frame->hands[HandsAndFace::kRight]);
+    });
+  };
+  const bool chooses = request.track.body.empty() && given.body == nullptr;
+  if (!chooses || !std::any_of(people.chosen.begin(), people.chosen.end(), shows_hands)) return body;
+  return BodyOrBuiltin(kBodyWithHands);
 }
 
 TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople& people) {

@@ -3,6 +3,7 @@
 /// as one scene.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -38,6 +39,10 @@ struct ChosenPeople {
 /// Detects, links and selects people. Throws std::runtime_error naming a file that cannot be used, NoPersonFound if
 /// nobody is left, Cancelled.
 ChosenPeople DetectAndChoosePeople(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks);
+
+/// `body`, or the built-in one with fingers if no body was named or given and somebody chosen shows a hand.
+std::shared_ptr<const BodyModel> BodyFor(const TrackPeopleRequest& request, const GivenInMemory& given,
+                                         const ChosenPeople& people, std::shared_ptr<const BodyModel> body);
 
 /// Report of the clip's detections and of the selected people.
 TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople& people);

@@ -144,6 +144,7 @@ bool MoveToCamera(const VideoPixels& video, const Camera& camera, Sequence* seen
 }
 template bool MoveToCamera(const VideoPixels&, const Camera&, KeypointSequence*);
 template bool MoveToCamera(const VideoPixels&, const Camera&, DenseSequence*);
+template bool MoveToCamera(const VideoPixels&, const Camera&, HandsAndFaceSequence*);
 template bool MoveToCamera(const VideoPixels&, const Camera&, PartLabelSequence*);
 
 }  // namespace bodyloom

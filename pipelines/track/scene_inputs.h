@@ -10,6 +10,7 @@
 #include "data_tools/video/video_reader.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/camera.h"
+#include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/lifter_weights.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/pose_prior.h"
@@ -22,8 +23,10 @@ namespace bodyloom {
 /// Inputs given in memory, which replace the files named by a request.
 struct GivenInMemory {
   const KeypointSequence* keypoints = nullptr;  ///< of one person; borrowed
-  std::shared_ptr<const BodyModel> body;        ///< null: the request's
-  std::optional<Camera> camera;                 ///< fully known
+  /// In the frames of the keypoints, or null; borrowed.
+  const HandsAndFaceSequence* hands_and_face = nullptr;
+  std::shared_ptr<const BodyModel> body;  ///< null: the request's
+  std::optional<Camera> camera;           ///< fully known
 };
 
 struct SceneInputs {

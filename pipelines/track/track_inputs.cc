@@ -104,6 +104,11 @@ void AgreeOnImageSize(const std::string& path, int width, int height, Camera* ca
   }
 }
 
+/// Hands and faces of given detections are used where they were asked for, and by bodies with fingers.
+bool UsesHands(const TrackRequest& request, const TrackInputs& inputs) {
+  return request.detector.hands_and_faces != HandsAndFaceChoice::kOff || HasFingers(*inputs.body);
+}
+
 void UseDense(const std::string& path, const TrackRequest& request, const PipelineCallbacks& callbacks,
               TrackInputs* inputs) {
   LoadDenseOptions options;
@@ -138,17 +143,23 @@ void UseDetections(const TrackRequest& request, const PipelineCallbacks& callbac
     options.min_confidence = request.min_confidence;
     options.convention = request.convention;
     std::vector<std::string> warnings;
-    inputs->keypoints = LoadDetections(request.detections, options, &warnings);
+    PersonDetections person = LoadPersonDetections(request.detections, options, &warnings);
+    inputs->keypoints = std::move(person.body);
+    if (UsesHands(request, *inputs)) inputs->hands_and_face = std::move(person.hands_and_face);
     for (const std::string& warning : warnings) callbacks.Message(warning);
     UseCameraPixels(request.detections, callbacks, *inputs, &*inputs->keypoints);
+    MoveToCamera(PixelsOf(inputs->video), camera, &inputs->hands_and_face);
     AgreeOnImageSize(request.detections, inputs->keypoints->image_width, inputs->keypoints->image_height, &camera);
   }
   if (holds.dense && request.dense.empty()) UseDense(request.detections, request, callbacks, inputs);
 }
 
-void UseGivenKeypoints(const TrackRequest& request, const KeypointSequence& keypoints, TrackInputs* inputs) {
+void UseGivenKeypoints(const TrackRequest& request, const KeypointSequence& keypoints,
+                       const HandsAndFaceSequence* hands_and_face, TrackInputs* inputs) {
   Camera& camera = inputs->camera.camera;
   inputs->keypoints = keypoints;
+  if (hands_and_face != nullptr && UsesHands(request, *inputs)) inputs->hands_and_face = *hands_and_face;
+  DropUnsure(request.min_confidence, &inputs->hands_and_face);
   DropUnsure(request.min_confidence, &*inputs->keypoints);
   AgreeOnImageSize(request.detections, keypoints.image_width, keypoints.image_height, &camera);
 }
@@ -178,6 +189,9 @@ void CutToSpan(const TrackRequest& request, TrackInputs* inputs) {
     if (*observations) *observations = CutFrames(std::move(**observations), first, last);
   };
   cut(&inputs->keypoints), cut(&inputs->dense), cut(&inputs->part_labels);
+  if (!inputs->hands_and_face.frames.empty()) {
+    inputs->hands_and_face = CutFrames(std::move(inputs->hands_and_face), first, last);
+  }
   const int count = last - first + 1;
   if (inputs->initialiser) {
     InitialPoses& initial = *inputs->initialiser;
@@ -214,6 +228,7 @@ void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& cal
   const PersonTrack person = PersonOf(clip.people, request.person, request.video);
   DetectedObservations seen = ObservationsOf(clip, person, WholeClip(clip), request, *inputs);
   inputs->keypoints = std::move(seen.keypoints);
+  inputs->hands_and_face = std::move(seen.hands_and_face);
   inputs->part_labels = std::move(seen.mask);
   UseFocal(request, &inputs->camera.camera);  // the lines need it
   if (!request.live_lag && WhyNoCameraMotion(request).empty()) {
@@ -243,6 +258,7 @@ TrackSequenceInput TrackInputs::ForTracker() const {
   input.keypoints = keypoints ? &*keypoints : nullptr;
   input.dense = dense ? &*dense : nullptr;
   input.part_labels = part_labels ? &*part_labels : nullptr;
+  input.hands_and_face = hands_and_face.empty() ? nullptr : &hands_and_face;
   if (initialiser && initialiser->landmarks.empty()) input.initialiser = &initialiser->motion;
   if (!lifted.empty()) input.lifted = &lifted;
   if (!camera_from_scene.empty()) input.camera_from_scene = &camera_from_scene;
@@ -259,7 +275,7 @@ TrackInputs LoadTrackInputs(const TrackRequest& given_request, const PipelineCal
       LoadSceneInputs(request, given, request.detections, !ReadsJointsOffLabels(request));
   Camera& camera = inputs.camera.camera;
   if (given.keypoints != nullptr) {
-    UseGivenKeypoints(request, *given.keypoints, &inputs);
+    UseGivenKeypoints(request, *given.keypoints, given.hands_and_face, &inputs);
   } else if (!request.detections.empty()) {
     UseDetections(request, callbacks, &inputs);
   }

@@ -20,6 +20,7 @@ namespace bodyloom {
 
 struct TrackInputs : SceneInputs {
   std::optional<KeypointSequence> keypoints;
+  HandsAndFaceSequence hands_and_face;  ///< in the frames of the keypoints; without frames: not used
   std::optional<DenseSequence> dense;
   std::optional<PartLabelSequence> part_labels;
   bool joints_from_labels = false;            ///< `keypoints` were derived from `part_labels`

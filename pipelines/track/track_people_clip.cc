@@ -139,6 +139,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
+  scene.body = BodyFor(request, given, people, scene.body);
   TrackPeopleReport report = ReportOf(request, people);
   FindMotion(request, people, callbacks, &clock, &scene, &report);
   clock.Begin("write");
@@ -176,6 +177,7 @@ TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& given_request, const
   SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
+  scene.body = BodyFor(request, given, people, scene.body);
   TrackedPeople found;
   found.report = ReportOf(request, people);
   FindMotion(request, people, callbacks, &clock, &scene, &found.report);

@@ -30,6 +30,7 @@ std::string PersonText(const TrackedPerson& person) {
   if (person.solve.stature_m > 0) {
     text += "         taken to be " + Fixed(person.solve.stature_m, 2) + " m tall\n";
   }
+  text += FittedPartsText(person.solve);
   if (!person.views.empty()) text += "         seen by " + Joined(person.views) + "\n";
   if (person.room.frames > 0) text += "         " + person.room.BriefReport() + "\n";
   if (person.seen.joined > 0) {
@@ -87,6 +88,7 @@ Json PersonJson(const TrackedPerson& person) {
                {"hidden_frames", person.hidden.frames},
                {"fitted_again", person.fitted_again},
                {"room", ToJson(person.room)}};
+  AddFittedParts(solve, &json);
   if (!person.views.empty()) json["views"] = person.views;
   return json;
 }

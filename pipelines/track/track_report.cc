@@ -111,6 +111,21 @@ std::string FocalSigmaText(double focal_log_sigma) {
   return ", estimated within " + Fixed(100 * focal_log_sigma, 1) + " % (standard deviation)";
 }
 
+std::string FittedPartsText(const TrackSequenceSummary& summary) {
+  std::string text;
+  const auto add = [&text](const std::string& what, const PartFitSummary& part) {
+    text += "         " + what + " " + (part.ran ? "" : "not fitted: ") + part.why;
+    if (part.median_px > 0) text += "; median " + Fixed(part.median_px, 2) + " px";
+    text += "\n";
+  };
+  if (summary.hands.size() == 2) {
+    add("left hand", summary.hands[0]);
+    add("right hand", summary.hands[1]);
+  }
+  if (summary.head) add("head", *summary.head);
+  return text;
+}
+
 std::string ToText(const TrackReport& report) {
   const TrackSequenceSummary& solve = report.solve;
   std::string text = std::to_string(report.num_frames) + " frames: ";
@@ -134,6 +149,7 @@ std::string ToText(const TrackReport& report) {
     text += "; dense keypoints: median " + Fixed(solve.dense_median_px, 2) + " px";
   }
   text += "\n";
+  text += FittedPartsText(solve);
   if (report.initialiser && solve.IsUsable()) text += ToText(*report.initialiser, report.num_frames);
   if (solve.focal_px > 0) {
     text += "camera   focal length " + Fixed(solve.focal_px, 1) + " px" + FocalSigmaText(solve.focal_log_sigma) + "\n";
@@ -232,6 +248,7 @@ std::string ToJson(const TrackReport& report) {
   if (report.camera_path.any() || !report.camera_path.motion.empty())
     json["camera_path"] = ToJson(report.camera_path, solve.camera_path);
   for (const ViewReport& view : report.views) json["views"].push_back(ToJson(view));
+  AddFittedParts(solve, &json);
   if (report.initialiser) json["initialiser"] = ToJson(*report.initialiser);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -60,4 +60,8 @@ std::string ToText(const std::vector<PlanEntry>& plan);
 /// given or its standard deviation is unknown.
 std::string FocalSigmaText(double focal_log_sigma);
 
+/// A line for each hand and the head that were fitted after the body, or why they were not: "left hand seen in 253 of
+/// 367 frames, 31 px long; median 2.10 px". Nothing without hands and faces.
+std::string FittedPartsText(const TrackSequenceSummary& summary);
+
 }  // namespace bodyloom

@@ -578,6 +578,7 @@ def track(
     end_s: float | None = None,
     rotate: int | Literal["auto"] = 0,
     captured_fps: float | None = None,
+    hands: Literal["auto", "on", "off"] = "off",
     progress: _Progress | None = None,
 ) -> Track: ...
 def track_views(

@@ -21,6 +21,7 @@
 #include "tracking/clip/track_result.h"
 #include "tracking/clip/turn_to_vertical.h"
 #include "tracking/clip/uncertainty.h"
+#include "tracking/hands/fit_hands.h"
 #include "tracking/initialise/ground_plane.h"
 #include "tracking/initialise/initial_states.h"
 #include "tracking/initialise/outlier_frames.h"
@@ -373,6 +374,10 @@ void ClipFit::Finish(TrackSequenceResult* result) {
   if (options_.estimate_uncertainty) {
     FillJointSigma(&result->track);
     clock_.Record("uncertainty");
+  }
+  if (input_.hands_and_face != nullptr) {
+    FitHandsAndHead(input_, threads_, result);
+    clock_.Record("hands and head");
   }
   summary_.seconds = clock_.seconds();
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tracking/clip/term_kinds.h"
+#include "tracking/hands/fit_hands.h"
 #include "tracking/initialise/initial_states.h"
 #include "tracking/room/picture_vertical.h"
 #include "tracking/terms/observability.h"
@@ -63,6 +64,7 @@ std::vector<PlanEntry> PlanTrackSequence(const TrackSequenceInput& input, const 
                           : "estimated with the clip");
   const std::string no_lines = WhyNoPictureVertical(input, options);
   add("vertical from lines", no_lines.empty(), no_lines.empty() ? input.picture_vertical->BriefReport() : no_lines);
+  for (PlanEntry& entry : PlanHandsAndHead(input)) plan.push_back(std::move(entry));
   add("uncertainty", options.estimate_uncertainty, options.estimate_uncertainty ? "per joint" : "switched off");
   return plan;
 }

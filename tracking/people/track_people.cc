@@ -10,6 +10,7 @@
 #include "tracking/clip/clip_fit.h"
 #include "tracking/clip/fits_progress.h"
 #include "tracking/clip/uncertainty.h"
+#include "tracking/hands/fit_hands.h"
 #include "tracking/problem/stature.h"
 #include "tracking/room/shared_scene.h"
 
@@ -117,6 +118,15 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   const bool unknown_focal = options.camera_knowledge == CameraKnowledge::kUnknownFocal;
   const bool shares_path_scale = n > 1 && people[0].camera_from_scene != nullptr && people[0].camera_scale_m == 0;
   FitsProgress fits(options, (alone ? n : unknown_focal ? 3 * n : 2 * n) + (shares_path_scale ? n : 0));
+  // Hands and heads come last, after the fits that the scene asks for.
+  std::vector<const HandsAndFaceSequence*> hands_and_faces(n);
+  for (size_t i = 0; i < n; ++i) hands_and_faces[i] = std::exchange(people[i].hands_and_face, nullptr);
+  const auto fit_hands = [&](TrackPeopleResult* fitted) {
+    for (size_t i = 0; i < n && !fits.stopped(); ++i) {
+      people[i].hands_and_face = hands_and_faces[i];
+      FitHandsAndHead(people[i], ThreadsFor(options.num_threads), &fitted->people[i]);
+    }
+  };
   TrackPeopleResult result;
   result.summary.hidden.resize(n);
   result.summary.fitted_again.resize(n, 0);
@@ -130,7 +140,10 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   SharedScene& scene = result.summary.scene;
   const FocalPrior focal_prior = people[0].focal_prior.value_or(FocalPrior::ForImage(width, height));
   scene = Join(result.people, focal_prior, options);
-  if (alone || fits.stopped()) return result;
+  if (alone || fits.stopped()) {
+    fit_hands(&result);
+    return result;
+  }
 
   std::vector<OwnObservations> own(people.begin(), people.end());
   std::vector<PersonInScene> in_scene;
@@ -174,6 +187,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
       AddFocalSpread(scene.focal_log_sigma, &result.people[i].track);
     }
   }
+  fit_hands(&result);
   ShareWorld(scene, &result.people);
   return result;
 }

@@ -8,6 +8,7 @@
 
 #include "geometry/base/check.h"
 #include "geometry/math/rotation.h"
+#include "geometry/scene/hands_and_face.h"
 #include "tracking/problem/stature.h"
 
 namespace bodyloom {
@@ -239,6 +240,10 @@ void CheckInput(const TrackSequenceInput& input, const TrackSequenceOptions& opt
   for (const UserTerm& term : options.user_terms) CheckUserTerm(term, *input.body);
   const ClipExtent extent = ExtentOf(input);
   BODYLOOM_CHECK(extent.frames > 0, "track: the detections hold no frames");
+  if (input.hands_and_face != nullptr) {
+    BODYLOOM_CHECK(input.hands_and_face->num_frames() == extent.frames, "track: the hands and faces have ",
+                   input.hands_and_face->num_frames(), " frames, the detections ", extent.frames);
+  }
   if (input.initialiser != nullptr) {
     BODYLOOM_CHECK(input.initialiser->num_frames() == extent.frames, "track: the initialiser has ",
                    input.initialiser->num_frames(), " frames, the detections ", extent.frames);

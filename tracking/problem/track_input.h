@@ -17,6 +17,7 @@
 
 namespace bodyloom {
 
+struct HandsAndFaceSequence;
 struct LiftedFrame;
 struct PictureVertical;
 
@@ -60,6 +61,10 @@ struct TrackSequenceInput {
   /// Part labels or a mask of each frame. They refine a start but cannot give one: without 2D joints and dense
   /// keypoints an initialiser is required, and weak perspective is not available.
   const PartLabelSequence* part_labels = nullptr;
+  /// Hands and face in the frames of the 2D joints. After the solve, hands bend the fingers of a body that has them and
+  /// turn its wrists (hands/fit_hands.h), and the face turns its head (hands/turn_head.h); the rest of the track does
+  /// not depend on them. Not used by the live tracker.
+  const HandsAndFaceSequence* hands_and_face = nullptr;
   const std::vector<ViewInput>* views = nullptr;  ///< other cameras; not with weak perspective nor the live tracker
   const TrackStart* start = nullptr;              ///< from several views, as a rule (rig/track_views.h)
   const Motion* initialiser = nullptr;            ///< camera-frame poses of another system; NaN: none (L_d of paper A)

@@ -107,6 +107,16 @@ struct ViewSummary {
   double reprojection_median_px = 0;
 };
 
+/// A part of the body that is fitted after the rest: a hand's fingers, wrist and forearm's twist, or the head.
+struct PartFitSummary {
+  bool ran = false;
+  std::string why;       ///< the evidence, or the reason why it did not run
+  int frames_seen = 0;   ///< in which its points were found
+  int iterations = 0;    ///< of Ceres
+  double median_px = 0;  ///< of its points' distances from where they were found
+  double size = 1;       ///< of the hand seen, relative to the body's
+};
+
 /// Longest time from one sight of a person to the next that smoothness can bridge, seconds. In holes of 1.5 s
 /// root_sigma grows to 0.5 m for a slow dancer and 1 m for a fast one, and limbs are as wrong as those of another pose
 /// (docs/lab/joint_sigma.md).
@@ -139,9 +149,11 @@ struct TrackSequenceSummary {
   int num_observations = 0, num_parameters = 0;
   GroundSummary ground;
   CameraPathSummary camera_path;
-  std::vector<ViewSummary> views;  ///< of TrackSequenceInput::views
-  int num_swaps_repaired = 0;      ///< left–right pairs found exchanged in the detections
-  int lost_in_holes = 0;           ///< of the lost frames those between two sights of one shot
+  std::vector<PartFitSummary> hands;   ///< left and right; empty: no hands and faces were given
+  std::optional<PartFitSummary> head;  ///< none: the same
+  std::vector<ViewSummary> views;      ///< of TrackSequenceInput::views
+  int num_swaps_repaired = 0;          ///< left–right pairs found exchanged in the detections
+  int lost_in_holes = 0;               ///< of the lost frames those between two sights of one shot
   [[nodiscard]] bool IsUsable() const { return status != SolveStatus::kFailure; }
   /// "120 tracked, 97 lost (90 in holes of more than 1.5 s)"; empty without frames.
   [[nodiscard]] std::string FramesReport() const;

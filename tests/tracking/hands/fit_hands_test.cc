@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/hands/fit_hands.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "geometry/biomechanics/hand_prior.h"
+#include "tests/support/synthetic_hands.h"
+#include "tests/support/toy_body.h"
+
+namespace bodyloom::fit_hands_test {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+HandSkeleton HandOfSide(size_t side) {
+  return FindHand(BuiltinBodyWithHands(), side == 0 ? HandSide::kLeft : HandSide::kRight).value();
+}
+
+HandAngleVector AnglesAt(const Track& track, const HandSkeleton& hand, int t) {
+  HandAngleVector angles;
+  for (int j = 0; j < kHandJoints; ++j) {
+    const Eigen::Vector3d w = track.motion.poses.row(t).segment<3>(3 * hand.joint[j]);
+    angles.segment<3>(3 * j) = HandAngles(hand, j, RotationFromAxisAngle(w));
+  }
+  return angles;
+}
+
+TEST(FitHands, FindsFingersOfEveryPoseFromAllSides) {
+  for (const auto& [pose, keys] : SyntheticHandPoses()) {
+    for (const double yaw : {0.0, 60.0, 180.0}) {
+      const FingerErrors errors =
+          FitSyntheticHands(MakeSyntheticHands({.pose = pose, .yaw_deg = yaw, .frames = FramesOf(pose)}), {}, 15);
+      for (size_t f = 0; f < 5; ++f)
+        EXPECT_LT(errors.mean_deg[f], 15) << pose << " at " << yaw << ", " << FingerNames()[f];
+    }
+  }
+}
+
+TEST(FitHands, SigmaIsOfTheSizeOfTheErrors) {
+  double within_one = 0, within_two = 0;
+  int clips = 0;
+  for (const char* pose : {"flat", "fist", "pinch", "counting"}) {
+    for (const unsigned seed : {1U, 2U}) {
+      const FingerErrors errors =
+          FitSyntheticHands(MakeSyntheticHands({.pose = pose, .yaw_deg = 60, .seed = seed}), {}, 5);
+      within_one += errors.within_one, within_two += errors.within_two;
+      ++clips;
+    }
+  }
+  EXPECT_GT(within_one / clips, 0.5) << "0.68 of a Gaussian";
+  EXPECT_LT(within_one / clips, 0.9);
+  EXPECT_GT(within_two / clips, 0.85) << "0.95 of a Gaussian";
+}
+
+TEST(FitHands, WithoutNoiseNothingButThePriorIsLeft) {
+  const FingerErrors errors = FitSyntheticHands(MakeSyntheticHands({.pose = "pinch", .noise = 0}), {}, 15);
+  for (const double mean : errors.mean_deg) EXPECT_LT(mean, 8) << "the stated sigma leave the prior its part";
+}
+
+TEST(FitHands, AnUnseenHandRestsWithTheWidthOfThePrior) {
+  SyntheticHands made = MakeSyntheticHands({.pose = "fist", .frames = 90, .unseen_from = 20});
+  const Track before = made.track;
+  const auto summaries = FitHands(BuiltinBodyWithHands(), made.seen, {}, {}, 2, &made.track);
+  EXPECT_EQ(summaries[0].frames_seen, 20);
+  EXPECT_EQ(summaries[1].why, "seen in 20 of 90 frames, 55 px long");
+  const HandPrior& prior = BuiltinHandPrior();
+  for (size_t side = 0; side < 2; ++side) {
+    const HandSkeleton hand = HandOfSide(side);
+    const HandAngleVector last = AnglesAt(made.track, hand, 89);
+    for (const int angle : FreeHandAngles()) EXPECT_NEAR(last[angle], prior.mean[angle], 6 * kDegree) << angle;
+    const Eigen::Vector3d wrist = made.track.motion.poses.row(89).segment<3>(3 * hand.wrist);
+    EXPECT_LT((wrist.transpose() - before.motion.poses.row(89).segment<3>(3 * hand.wrist)).norm(), 0.05);
+    // The σ of the last joints: wide where nothing is seen.
+    EXPECT_GT(made.track.joint_sigma(89, hand.joint[2]), 1.5 * made.track.joint_sigma(10, hand.joint[2]));
+    EXPECT_GT(made.track.joint_sigma(89, hand.joint[2]), 0.04);
+    EXPECT_LT(made.track.joint_sigma(10, hand.joint[2]), 0.03);
+  }
+}
+
+TEST(FitHands, ChangesNothingButHandsAndForearms) {
+  SyntheticHands made = MakeSyntheticHands({.pose = "pointing", .frames = 12});
+  const Track before = made.track;
+  FitHands(BuiltinBodyWithHands(), made.seen, {}, {}, 1, &made.track);
+  std::set<int> fingers, turned;
+  for (size_t side = 0; side < 2; ++side) {
+    const HandSkeleton hand = HandOfSide(side);
+    fingers.insert(hand.joint.begin(), hand.joint.end());
+    turned.insert({hand.wrist, BuiltinBodyWithHands().parents()[hand.wrist]});
+  }
+  int moved = 0;
+  for (int t = 0; t < 12; ++t) {
+    for (int j = 0; j < BuiltinBodyWithHands().num_joints(); ++j) {
+      const bool of_hand = fingers.count(j) > 0 || turned.count(j) > 0;
+      const bool same =
+          made.track.motion.poses.row(t).segment<3>(3 * j) == before.motion.poses.row(t).segment<3>(3 * j);
+      EXPECT_TRUE(of_hand || same) << j;
+      moved += same ? 0 : 1;
+      if (fingers.count(j) == 0) EXPECT_EQ(made.track.joints[t].row(j), before.joints[t].row(j)) << j;
+    }
+    for (int k : {0, 5, 6, 11, 16}) EXPECT_EQ(made.track.coco17[t].row(k), before.coco17[t].row(k)) << k;
+    const BodyPose pose =
+        PoseFromAxisAngle(BuiltinBodyWithHands(), made.track.motion.poses.row(t), made.track.motion.trans.row(t));
+    const MatrixX3d joints = PoseSkeleton(BuiltinBodyWithHands(), BuiltinBodyWithHands().RestJoints({}), pose).joints;
+    EXPECT_LT((joints - made.track.joints[t]).norm(), 1e-9) << "joints are those of the pose";
+  }
+  EXPECT_EQ(made.track.motion.trans, before.motion.trans);
+  EXPECT_EQ(moved, 12 * 2 * 17);
+}
+
+TEST(FitHands, SameBytesForAnyNumberOfThreads) {
+  SyntheticHands one = MakeSyntheticHands({.pose = "counting", .frames = 20}), two = one;
+  FitHands(BuiltinBodyWithHands(), one.seen, {}, {}, 1, &one.track);
+  FitHands(BuiltinBodyWithHands(), two.seen, {}, {}, 4, &two.track);
+  EXPECT_EQ(one.track.motion.poses, two.track.motion.poses);
+  EXPECT_EQ(one.track.joint_sigma, two.track.joint_sigma);
+}
+
+TEST(FitHands, LostFramesStayLost) {
+  SyntheticHands made = MakeSyntheticHands({.pose = "flat", .frames = 12});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const int t : {0, 5, 6}) {
+    made.track.motion.poses.row(t).setConstant(nan), made.track.motion.trans.row(t).setConstant(nan);
+  }
+  FitHands(BuiltinBodyWithHands(), made.seen, {}, {}, 1, &made.track);
+  for (int t = 0; t < 12; ++t) EXPECT_EQ(made.track.motion.HasPose(t), t != 0 && t != 5 && t != 6);
+}
+
+TEST(FitHands, SaysWhyNot) {
+  SyntheticHands made = MakeSyntheticHands({.frames = 4});
+  const BodyModel& body = BuiltinBodyWithHands();
+  EXPECT_EQ(WhyNoHands(body, &made.seen), "");
+  EXPECT_EQ(WhyNoHands(body, nullptr), "no hands in the input");
+  EXPECT_EQ(WhyNoHands(BuiltinBody(), &made.seen), "the body has no finger joints");
+  HandsAndFaceSequence none = made.seen;
+  for (auto& frame : none.frames) frame = nullptr;
+  EXPECT_EQ(WhyNoHands(body, &none), "no hand is seen");
+  const Track before = made.track;
+  const auto summaries = FitHands(body, none, {}, {}, 1, &made.track);
+  EXPECT_FALSE(summaries[0].ran);
+  EXPECT_EQ(summaries[1].why, "no hand is seen");
+  EXPECT_EQ(made.track.motion.poses, before.motion.poses);
+  none.frames.pop_back();
+  EXPECT_THROW(FitHands(body, none, {}, {}, 1, &made.track), std::invalid_argument);
+}
+
+TEST(FitHands, TinyHandsAreLeftAtRest) {
+  SyntheticHands made = MakeSyntheticHands({.pose = "fist", .size_px = 12, .frames = 6});
+  const auto summaries = FitHands(BuiltinBodyWithHands(), made.seen, {}, {}, 1, &made.track);
+  EXPECT_EQ(summaries[0].frames_seen, 0);
+  EXPECT_EQ(summaries[0].why, "not seen, or too small; rests");
+  const HandAngleVector angles = AnglesAt(made.track, HandOfSide(0), 3);
+  for (const int angle : FreeHandAngles()) EXPECT_NEAR(angles[angle], BuiltinHandPrior().mean[angle], 3 * kDegree);
+}
+
+}  // namespace
+}  // namespace bodyloom::fit_hands_test
