@@ -253,22 +253,37 @@ double LongestGap(const BackgroundTracks& tracks, const TurningCamera& camera) {
   return std::max(gap, tracks.timestamps.back() - last);
 }
 
+/// rad/s between frames with a sight.
+double LargestSpeed(const BackgroundTracks& tracks, const TurningCamera& camera) {
+  double largest = 0;
+  for (size_t i = 1; i < camera.frames.size(); ++i) {
+    const double seconds =
+        tracks.timestamps[size_t(camera.frames[i])] - tracks.timestamps[size_t(camera.frames[i - 1])];
+    largest =
+        std::max(largest, RotationAngleBetween(camera.camera_from_first[i - 1], camera.camera_from_first[i]) / seconds);
+  }
+  return largest;
+}
+
 void TakePath(const BackgroundTracks& tracks, const TurningCamera& camera, CameraMotion* motion) {
   for (size_t i = 0; i < camera.frames.size(); ++i) {
     motion->path.timestamps.push_back(tracks.timestamps[size_t(camera.frames[i])]);
     motion->path.poses.push_back({camera.camera_from_first[i], Vector3d::Zero()});
   }
   motion->sigma_rad = camera.sigma_rad;
-  // Frames before the first and after the last that were looked at are held.
+  // Frames before the first and after the last with a sight are held; σ: half of the way at the path's largest speed.
+  const double speed = LargestSpeed(tracks, camera);
   if (motion->path.timestamps.front() > tracks.timestamps.front()) {
     motion->path.timestamps.insert(motion->path.timestamps.begin(), tracks.timestamps.front());
     motion->path.poses.insert(motion->path.poses.begin(), motion->path.poses.front());
-    motion->sigma_rad.insert(motion->sigma_rad.begin(), motion->sigma_rad.front());
+    const double held_s = motion->path.timestamps[1] - motion->path.timestamps[0];
+    motion->sigma_rad.insert(motion->sigma_rad.begin(), std::hypot(motion->sigma_rad.front(), speed * held_s / 2));
   }
   if (motion->path.timestamps.back() < tracks.timestamps.back()) {
+    const double held_s = tracks.timestamps.back() - motion->path.timestamps.back();
     motion->path.timestamps.push_back(tracks.timestamps.back());
     motion->path.poses.push_back(motion->path.poses.back());
-    motion->sigma_rad.push_back(motion->sigma_rad.back());
+    motion->sigma_rad.push_back(std::hypot(motion->sigma_rad.back(), speed * held_s / 2));
   }
   motion->log_focal = camera.log_focal;
   motion->log_focal_sigma = camera.log_focal_sigma;

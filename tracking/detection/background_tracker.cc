@@ -24,7 +24,8 @@ constexpr int kFlowWindow = 15, kFlowLevels = 3;
 constexpr double kThereAndBackPx = 0.4;
 constexpr int kFewestTracked = 12;
 constexpr double kKeptShare = 0.6, kLeastShare = 0.3;
-constexpr double kLostS = 0.7, kSteadyS = 0.11;
+constexpr double kLostS = 0.7, kSteadyS = 0.11, kSeekS = 0.1;
+constexpr double kFoundAgainShare = 0.5;
 constexpr double kRestPx = 0.3, kRestS = 1, kPassOverS = 0.2;
 constexpr size_t kMostKept = 24;  ///< anchors' pictures for loops
 constexpr int kMostPassedOver = 12;
@@ -238,7 +239,16 @@ class BackgroundTracker::Impl {
     }
     // A blurred frame is passed over.
     const bool is_blank = at_first_ < kFewestTracked;
-    if (is_blank || frame.time_s - seen_s_ > kLostS) {
+    const double lost_s = frame.time_s - seen_s_;
+    if (!is_blank && lost_s > kSeekS && frame.time_s - sought_s_ > kSeekS) {
+      sought_s_ = frame.time_s;
+      if (IsFoundAgain(frame, target)) {
+        BeginAnchor(frame, false);
+        CloseLoops(frame, kept_.size());
+        return;
+      }
+    }
+    if (is_blank || lost_s > kLostS) {
       BeginAnchor(frame, true);
       tracks_.anchors.back().after_break = CloseLoops(frame, kept_.size()) == 0;
     }
@@ -291,6 +301,17 @@ class BackgroundTracker::Impl {
     kept_.push_back({tracks_.anchors.size() - 1, std::move(pyramid_), corners_});
   }
 
+  /// Returns true if half of the points of an anchor, the latest or one that is kept, are in the frame.
+  [[nodiscard]] bool IsFoundAgain(const SmallFrame& frame, const Pyramid& target) const {
+    const auto is_in = [&](const Pyramid& pyramid, const std::vector<cv::Point2f>& corners) {
+      if (corners.size() < size_t(kFewestTracked)) return false;
+      const Seen start{corners, std::vector<char>(corners.size(), 1), 0};
+      return Seek(pyramid, corners, target, frame, start).count >= kFoundAgainShare * double(corners.size());
+    };
+    return is_in(pyramid_, corners_) ||
+           std::any_of(kept_.begin(), kept_.end(), [&](const Kept& kept) { return is_in(kept.pyramid, kept.corners); });
+  }
+
   /// Seeks the latest anchor in the first `count` that were kept; returns the number in which it was found.
   int CloseLoops(const SmallFrame& frame, size_t count) {
     int found = 0;
@@ -298,7 +319,7 @@ class BackgroundTracker::Impl {
       const Kept& kept = kept_[k];
       Seen start{kept.corners, std::vector<char>(kept.corners.size(), 1), 0};
       const Seen seen = Seek(kept.pyramid, kept.corners, pyramid_, frame, start);
-      if (seen.count < static_cast<int>(0.5 * static_cast<double>(kept.corners.size()))) continue;
+      if (seen.count < kFoundAgainShare * double(kept.corners.size())) continue;
       AddSight(frame, seen, &tracks_.anchors[kept.anchor]);
       ++found;
     }
@@ -312,7 +333,7 @@ class BackgroundTracker::Impl {
   Seen seen_, rest_;                  ///< latest sight; sight since which the points rest
   int at_first_ = 0;                  ///< points seen in the first frame after the anchor
   cv::Point2f velocity_{0, 0};        ///< small pixels a second, at the latest sight
-  double seen_s_ = 0, looked_s_ = 0, moved_s_ = 0;
+  double seen_s_ = 0, looked_s_ = 0, sought_s_ = 0, moved_s_ = 0;
   bool rests_ = true, has_moved_ = false;
   std::deque<SmallFrame> waiting_;  ///< passed over
   std::vector<Kept> kept_;

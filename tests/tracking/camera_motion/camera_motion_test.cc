@@ -195,6 +195,21 @@ TEST(CameraMotion, AStatedDeviationIsThatOfTheErrors) {
   EXPECT_LT(std::sqrt(normal / count), 2);
 }
 
+TEST(CameraMotion, AnEndThatIsNotSeenIsHeldWithALargerDeviation) {
+  SyntheticBackground scene;
+  scene.pose = [](double t) { return Tremor(t, 2); };
+  BackgroundTracks tracks = TracksOf(scene);
+  tracks.anchors[0].sights.resize(75);
+  const CameraMotion motion = FindCameraMotion(tracks, UnknownFocal(scene));
+  ASSERT_EQ(motion.kind, CameraMotionKind::kTurning) << motion.why;
+  ASSERT_EQ(motion.path.timestamps.size(), 77u);
+  EXPECT_EQ(motion.path.timestamps.back(), tracks.timestamps.back());
+  EXPECT_TRUE(motion.path.poses[76].camera_from_world_rotation == motion.path.poses[75].camera_from_world_rotation);
+  EXPECT_GT(motion.sigma_rad[76], 20 * motion.sigma_rad[75]);
+  tracks.anchors[0].sights.resize(50);  // more than a second
+  EXPECT_EQ(FindCameraMotion(tracks, UnknownFocal(scene)).kind, CameraMotionKind::kMoving);
+}
+
 TEST(CameraMotion, TooFewPointsSayNothing) {
   SyntheticBackground scene;
   scene.points = 60;  // some eight in view

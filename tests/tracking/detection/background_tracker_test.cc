@@ -165,6 +165,27 @@ TEST(BackgroundTracker, ACutBeginsAnew) {
   EXPECT_LE(tracks.anchors[1].frame, 56);
 }
 
+TEST(BackgroundTracker, AViewThatWasSeenBeforeIsFoundAgain) {
+  const Blobs blobs(8);
+  BackgroundTracker tracker;
+  int t = 0;
+  const auto push = [&](const Image& frame) { tracker.Push(frame, t / 30.0, {}), ++t; };
+  for (; t < 45;) push(blobs.Picture(-7.0 * t, 0));
+  for (int i = 0; i < 6; ++i) push(Image(kWidth, kHeight, {120, 120, 120}));
+  const int returned = t;
+  for (int i = 0; i < 6; ++i) push(blobs.Picture(2.0 * i, 0));
+  const BackgroundTracks tracks = tracker.Finish();
+  ASSERT_GE(tracks.anchors.size(), 3u);
+  for (const BackgroundTracks::Anchor& anchor : tracks.anchors) EXPECT_EQ(anchor.after_break, anchor.frame == 0);
+  const int again = tracks.anchors.back().frame;
+  EXPECT_GE(again, returned);
+  EXPECT_LT(again, returned + 5);
+  const auto& sights = tracks.anchors.front().sights;
+  const auto loop = std::find_if(sights.begin(), sights.end(), [&](const auto& s) { return s.frame == again; });
+  ASSERT_NE(loop, sights.end());
+  EXPECT_GT(NumSeen(*loop), int(0.5 * double(tracks.anchors.front().pixels.size())));
+}
+
 TEST(BackgroundTracker, ABlankWallHasNoPoints) {
   BackgroundTracker tracker;
   std::mt19937_64 random(1);
