@@ -505,15 +505,18 @@ class LiveBody {
   constructor(stage) {
     this.stage = stage;
     this.shape = 0;
-    this.arrivals = [];
+    this.drawn = []; // when, of the last two seconds
     const events = new EventSource('events');
-    events.onmessage = (message) => { this.newest = message.data; };
+    events.onmessage = (message) => {
+      this.newest = JSON.parse(message.data);
+      this.tell(this.newest.state);
+    };
     events.onerror = () => { element('place').textContent = 'the connection is lost, looking for it'; };
     const next = async () => {
       const data = this.newest;
       this.newest = null;
       try {
-        if (data) await this.take(JSON.parse(data));
+        if (data) await this.take(data);
       } catch (error) {
         console.error(error);
         element('place').textContent = `This browser cannot show the body: ${error.message}`;
@@ -523,17 +526,22 @@ class LiveBody {
     requestAnimationFrame(next);
   }
 
-  async take({ shape, pose_mean: mean, state }) {
+  // Also where nothing is drawn, as in a page that lies behind another.
+  tell({ status, seconds, delay_ms: delay, dropped, world }) {
     const now = performance.now();
-    this.arrivals = [...this.arrivals.filter((then) => now - then < 2000), now];
+    this.drawn = this.drawn.filter((then) => now - then < 2000);
+    element('place').textContent = `${status}, ${seconds.toFixed(1)} s; ${delay.toFixed(0)} ms after it was seen; ` +
+      `drawn ${(this.drawn.length / 2).toFixed(0)} times a second; ${dropped} frames passed over; world by: ${world.source}`;
+  }
+
+  async take({ shape, pose_mean: mean, state }) {
     const isFirst = this.shape === 0;
     if (state.poses && shape !== this.shape) await this.fetchBody(shape, state);
-    if (this.bones) this.show(state, mean);
-    if (isFirst && state.poses) this.centre();
-    const rate = this.arrivals.length > 1 ? 1000 * (this.arrivals.length - 1) / (now - this.arrivals[0]) : 0;
-    element('place').textContent = `${state.status}, ${state.seconds.toFixed(1)} s; ${state.delay_ms.toFixed(0)} ms after it was seen; ` +
-      `drawn ${rate.toFixed(0)} times a second; ${state.dropped} frames passed over; world by: ${state.world.source}`;
-    if (this.bones) document.body.dataset.ready = 'yes';
+    if (!this.bones) return;
+    this.show(state, mean);
+    if (isFirst) this.centre();
+    this.drawn.push(performance.now());
+    document.body.dataset.ready = 'yes';
   }
 
   async fetchBody(shape, state) {

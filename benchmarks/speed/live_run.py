@@ -55,7 +55,11 @@ def main():
         video = repeated(wishes.video, wishes.minutes, pathlib.Path(name))
         run = subprocess.Popen([wishes.command, "live", str(video), "--listen", "127.0.0.1:0", *others.split()], stderr=subprocess.PIPE,
                                text=True)
-        url = re.fullmatch(r"page +(\S+)\n", run.stderr.readline()).group(1)
+        first = run.stderr.readline()
+        found = re.fullmatch(r"page +(\S+)\n", first)
+        if not found:
+            sys.exit(first + run.stderr.read())
+        url = found.group(1)
         clients = [Client(url) for _ in range(wishes.clients)]
         said = []
         listener = threading.Thread(target=lambda: said.append(run.stderr.read()))

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "data_tools/video/frame_decoder.h"
@@ -16,22 +18,32 @@ namespace {
 
 using LiveClock = LiveImage::Clock;
 
-/// A frame this much behind its arrival is passed over.
-constexpr double kLateFrame_s = 0.2;
-/// A sender's clock runs slower than ours by at most this: the delay of its frames is measured against the least one
-/// seen, which is forgotten at this rate.
+constexpr double kLateFrame_s = 0.2, kStoodStill_s = 2;
 constexpr double kClockDrift = 1e-3;
 
 LiveClock::duration ToDuration(double seconds) {
   return std::chrono::duration_cast<LiveClock::duration>(std::chrono::duration<double>(seconds));
 }
-double ToSeconds(LiveClock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+double ToSeconds(LiveClock::time_point time) { return std::chrono::duration<double>(time.time_since_epoch()).count(); }
 
 }  // namespace
 
 LiveSourceKind LiveSourceKindOf(const std::string& source) {
   if (source.find("://") != std::string::npos) return LiveSourceKind::kStream;
-  return source.starts_with("/dev/") ? LiveSourceKind::kCamera : LiveSourceKind::kFile;
+  std::error_code error;
+  const bool is_device = source.starts_with("/dev/video") || std::filesystem::is_character_file(source, error);
+  return is_device ? LiveSourceKind::kCamera : LiveSourceKind::kFile;
+}
+
+bool FramePace::IsLate(double source_s, double now_s) {
+  const double own_zero_s = now_s - source_s;
+  if (!is_file_) zero_s_ = std::min(zero_s_ + kClockDrift * (now_s - last_s_), own_zero_s);
+  last_s_ = now_s;
+  const bool is_late = own_zero_s - zero_s_ > kLateFrame_s;
+  if (is_late && now_s - in_time_s_ <= kStoodStill_s) return true;
+  if (is_late) zero_s_ = own_zero_s;
+  in_time_s_ = now_s;
+  return false;
 }
 
 /// An open source.
@@ -92,7 +104,7 @@ class LiveVideo::Decoder {
 };
 
 LiveVideo::LiveVideo(const std::string& source, const LiveVideoOptions& options)
-    : source_(source), options_(options), kind_(LiveSourceKindOf(source)) {
+    : source_(source), options_(options), kind_(LiveSourceKindOf(source)), pace_(kind_ == LiveSourceKind::kFile) {
   BODYLOOM_CHECK(options.pace >= 0 && std::isfinite(options.pace), "live video: a pace of ", options.pace,
                  ", expected 0 or more");
   BODYLOOM_CHECK(options.timeout_s > 0 && options.retry_s >= 0, "live video: lost after ", options.timeout_s,
@@ -120,21 +132,11 @@ void LiveVideo::WaitUntil(LiveClock::time_point time) {
   stopped_.wait_until(lock, time, [this] { return stop_.load(); });
 }
 
-bool LiveVideo::IsLate(double decoder_s, LiveClock::time_point now) {
-  if (kind_ == LiveSourceKind::kFile) {
-    if (options_.pace == 0) return false;
-    return ToSeconds(now - zero_) - decoder_s / options_.pace > kLateFrame_s;
-  }
-  const LiveClock::time_point own_zero = now - ToDuration(decoder_s);
-  zero_ = std::min(zero_ + ToDuration(kClockDrift * ToSeconds(now - last_)), own_zero);
-  return ToSeconds(own_zero - zero_) > kLateFrame_s;
-}
-
-double LiveVideo::SecondsOf(double decoder_s, LiveClock::time_point now) {
+double LiveVideo::SecondsOf(double decoder_s, double due_s) {
   if (opened_anew_) {
-    if (!started_) start_ = now;
+    if (!started_) start_s_ = due_s;
     // A source found again continues by the clock, after the frames before.
-    shift_s_ = started_ ? std::max(ToSeconds(now - start_), seconds_ + 1e-3) - decoder_s : -decoder_s;
+    shift_s_ = started_ ? std::max(due_s - start_s_, seconds_ + 1e-3) - decoder_s : -decoder_s;
     started_ = true;
     opened_anew_ = false;
   }
@@ -156,23 +158,21 @@ LiveVideo::Event LiveVideo::Read(LiveImage* frame) {
         decoder_.reset();
         return Event::kLost;
       }
-      const LiveClock::time_point now = kind_ == LiveSourceKind::kFile ? LiveClock::now() : decoder_->packet_arrived();
-      const double at = decoder_->time();
-      if (opened_anew_)
-        zero_ = now - ToDuration(kind_ == LiveSourceKind::kFile && options_.pace > 0 ? at / options_.pace : at);
-      if (opened_anew_) last_ = now;
-      const double seconds = SecondsOf(at, now);
-      if (IsLate(at, now)) {
+      const bool is_file = kind_ == LiveSourceKind::kFile;
+      const double at = decoder_->time(), source_s = is_file && options_.pace > 0 ? at / options_.pace : at;
+      const LiveClock::time_point arrived = is_file ? LiveClock::now() : decoder_->packet_arrived();
+      if (opened_anew_) pace_.Restart(source_s, ToSeconds(arrived));
+      const double seconds = SecondsOf(at, ToSeconds(arrived));
+      const bool has_pace = !is_file || options_.pace > 0;
+      if (has_pace && pace_.IsLate(source_s, ToSeconds(arrived))) {
         ++late_;
-        last_ = now;
         continue;
       }
-      last_ = now;
       decoder_->Convert(&frame->image);
       frame->seconds = seconds;
-      frame->arrived = now;
-      if (kind_ == LiveSourceKind::kFile && options_.pace > 0) {
-        frame->arrived = zero_ + ToDuration(at / options_.pace);
+      frame->arrived = arrived;
+      if (is_file && has_pace) {
+        frame->arrived = LiveClock::time_point(ToDuration(pace_.Due(source_s)));
         WaitUntil(frame->arrived);
         if (stop_) break;
       }

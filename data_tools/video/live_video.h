@@ -2,13 +2,13 @@
 /// Reads the frames of a camera, of a network stream or of a file at its own pace, each when it is due.
 ///
 ///   source             kind
-///   /dev/video0        camera (Video4Linux): any path below /dev
+///   /dev/video0        camera (Video4Linux), as is any other character device
 ///   rtsp://host/name   stream: rtsp, http, https, udp, rtp, rtmp, srt
 ///   clip.mp4           file
 /// A frame's arrival is the moment at which its packet was there, before it was decoded; for a file the moment at which
-/// it is due, as if a camera had filmed it then. Nothing is decoded later than a fifth of a second behind that: frames
-/// which are passed over instead are counted (late()). A camera or stream that ends, fails or is silent for longer than
-/// the timeout is lost, and opened again until it is found.
+/// it is due, as if a camera had filmed it then. Frames that come too late are passed over (FramePace) and counted. A
+/// camera or stream that ends, fails or is silent for longer than the timeout is lost, and opened again until it is
+/// found.
 #pragma once
 
 #include <atomic>
@@ -45,6 +45,29 @@ struct LiveImage {
   Clock::time_point arrived;
 };
 
+/// Tells frames that come too late to be of use: a fifth of a second after they are due. A file's frames are due by its
+/// first one's time. Those of a sender, which has a clock of its own, are due with the least delay seen; that is
+/// forgotten by a thousandth of the time passed, as clocks differ by less. When no frame has been in time for two
+/// seconds, it is the source that stood still, and frames are due by the newest one from then on. Times are seconds.
+class FramePace {
+ public:
+  explicit FramePace(bool is_file) : is_file_(is_file) {}
+
+  /// A frame of the source's time `source_s` that is in time at `now_s`; those that follow are due by it.
+  void Restart(double source_s, double now_s) {
+    zero_s_ = now_s - source_s;
+    last_s_ = in_time_s_ = now_s;
+  }
+  /// Returns true if the frame is to be passed over. Neither time decreases from call to call.
+  bool IsLate(double source_s, double now_s);
+  /// The moment at which a frame is due.
+  [[nodiscard]] double Due(double source_s) const { return zero_s_ + source_s; }
+
+ private:
+  bool is_file_;
+  double zero_s_ = 0, last_s_ = 0, in_time_s_ = 0;
+};
+
 class LiveVideo {
  public:
   enum class Event {
@@ -77,10 +100,8 @@ class LiveVideo {
   void Open();
   /// Waits until `time`, or Stop().
   void WaitUntil(LiveImage::Clock::time_point time);
-  /// Seconds since the first frame of the current opening, on the frame's own clock, to those of LiveImage.
-  double SecondsOf(double decoder_s, LiveImage::Clock::time_point now);
-  /// Returns true if the frame is too late to be of use.
-  bool IsLate(double decoder_s, LiveImage::Clock::time_point now);
+  /// Seconds of LiveImage of a frame at this time of the decoder's, which is due at `due_s`.
+  double SecondsOf(double decoder_s, double due_s);
 
   const std::string source_;
   const LiveVideoOptions options_;
@@ -91,9 +112,8 @@ class LiveVideo {
   std::atomic<int64_t> late_ = 0;
   std::mutex mutex_;
   std::condition_variable stopped_;
-  LiveImage::Clock::time_point start_;  ///< the first frame's arrival
-  LiveImage::Clock::time_point zero_;   ///< arrival of the current opening's time 0, had nothing delayed it
-  LiveImage::Clock::time_point last_;   ///< the last frame's arrival
+  FramePace pace_;
+  double start_s_ = 0;  ///< the first frame's arrival, on LiveImage::Clock
   bool started_ = false, opened_anew_ = true;
   double shift_s_ = 0, seconds_ = 0;
 };

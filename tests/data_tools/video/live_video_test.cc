@@ -16,6 +16,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/video_reader.h"
 #include "tests/data_tools/video/clip_maker.h"
+#include "tests/data_tools/video/tcp_source.h"
 
 namespace bodyloom::live_video_test {
 namespace {
@@ -41,48 +42,48 @@ class NumberedClip {
   std::string path_;
 };
 
-/// Serves bytes to each client in turn at a free port of 127.0.0.1, and hangs up.
-class TcpSource {
- public:
-  explicit TcpSource(std::string bytes) : bytes_(std::move(bytes)), socket_(socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address = {};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&address), size), 0);
-    EXPECT_EQ(listen(socket_, 4), 0);
-    EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size), 0);
-    url_ = "tcp://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-    thread_ = std::thread([this] {
-      for (;;) {
-        const int client = accept(socket_, nullptr, nullptr);
-        if (client < 0) return;
-        for (size_t at = 0; at < bytes_.size();) {
-          const ssize_t sent = send(client, bytes_.data() + at, bytes_.size() - at, MSG_NOSIGNAL);
-          if (sent <= 0) break;
-          at += size_t(sent);
-        }
-        close(client);
-      }
-    });
-  }
-  ~TcpSource() {
-    shutdown(socket_, SHUT_RDWR);
-    thread_.join();
-    close(socket_);
-  }
-  TcpSource(const TcpSource&) = delete;
-  TcpSource& operator=(const TcpSource&) = delete;
-  [[nodiscard]] const std::string& url() const { return url_; }
+TEST(FramePace, OfAFileIsItsFirstFrames) {
+  FramePace pace(true);
+  pace.Restart(0, 100);
+  EXPECT_EQ(pace.Due(1.5), 101.5);
+  EXPECT_FALSE(pace.IsLate(1, 101));
+  EXPECT_FALSE(pace.IsLate(3, 101.5));  // decoded ahead
+  EXPECT_FALSE(pace.IsLate(3.5, 103.69));
+  EXPECT_TRUE(pace.IsLate(4, 104.21));
+  EXPECT_EQ(pace.Due(4), 104);  // it catches up
+  EXPECT_FALSE(pace.IsLate(5, 105));
+}
 
- private:
-  std::string bytes_, url_;
-  int socket_;
-  std::thread thread_;
-};
+TEST(FramePace, OfASenderIsByTheLeastDelay) {
+  FramePace pace(false);
+  pace.Restart(50, 100);  // the first frame had waited for a second
+  EXPECT_FALSE(pace.IsLate(51, 100));
+  EXPECT_TRUE(pace.IsLate(52, 101.25));
+  EXPECT_FALSE(pace.IsLate(53, 102.1));
+  // A clock that is slower by half a thousandth is followed for hours.
+  for (int i = 0; i < 20'000; ++i) EXPECT_FALSE(pace.IsLate(54 + i, 103 + i * 1.0005)) << i;
+}
+
+TEST(FramePace, GoesOnFromASourceThatStoodStill) {
+  for (const bool is_file : {true, false}) {
+    FramePace pace(is_file);
+    pace.Restart(0, 0);
+    EXPECT_FALSE(pace.IsLate(1, 1));
+    // Nothing for four minutes, then frames at the usual pace: all are late by as much.
+    EXPECT_FALSE(pace.IsLate(1.1, 241));
+    EXPECT_FALSE(pace.IsLate(1.2, 241.1));
+    EXPECT_NEAR(pace.Due(1.2), 241.1, 0.25);
+    // Half a second of silence: two seconds are passed over in the hope that it catches up.
+    int late = 0;
+    for (int i = 0; i < 40; ++i) late += pace.IsLate(1.3 + 0.1 * i, 241.7 + 0.1 * i) ? 1 : 0;
+    EXPECT_NEAR(late, 15, 1);
+  }
+}
 
 TEST(LiveVideo, TellsSourcesByTheirNames) {
   EXPECT_EQ(LiveSourceKindOf("/dev/video0"), LiveSourceKind::kCamera);
+  EXPECT_EQ(LiveSourceKindOf("/dev/null"), LiveSourceKind::kCamera);  // a device
+  EXPECT_EQ(LiveSourceKindOf("/dev/shm/clip.mp4"), LiveSourceKind::kFile);
   EXPECT_EQ(LiveSourceKindOf("rtsp://phone.local:8554/live"), LiveSourceKind::kStream);
   EXPECT_EQ(LiveSourceKindOf("clip.mp4"), LiveSourceKind::kFile);
   EXPECT_EQ(LiveSourceKindOf("a:b.mp4"), LiveSourceKind::kFile);
@@ -187,18 +188,22 @@ TEST(LiveVideo, ReadsADeviceWhereLibavdeviceIs) {
               testing::ThrowsMessage<std::runtime_error>(
                   testing::HasSubstr("/dev/video0: this ffmpeg reads no cameras of the kind no such kind")));
   options.device = "v4l2";
-  EXPECT_THAT([&] { LiveVideo("/dev/no-such-camera", options); },
-              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr(
-                  "/dev/no-such-camera: not a camera that can be read (No such file or directory)")));
+  EXPECT_THAT([&] { LiveVideo("/dev/video-none", options); },
+              testing::ThrowsMessage<std::runtime_error>(
+                  testing::HasSubstr("/dev/video-none: not a camera that can be read (No such file or directory)")));
 }
 
 TEST(LiveVideo, RefusesWhatItCannotRead) {
   EXPECT_THAT([] { LiveVideo("no-such-file.mp4", {}); },
               testing::ThrowsMessage<std::runtime_error>(testing::StartsWith("no-such-file.mp4: ")));
   // Only network protocols: an address must not read a file of this machine.
-  EXPECT_THAT([] { LiveVideo("file:///etc/hostname", {}); },
-              testing::ThrowsMessage<std::runtime_error>(testing::StartsWith("file:///etc/hostname: not a stream")));
-  EXPECT_THAT([] { LiveVideo("concat://etc/hostname", {}); }, testing::Throws<std::runtime_error>());
+  const NumberedClip clip(3, "-c:v mpeg4", "clip.mp4");
+  LiveVideo(clip.path(), {});
+  for (const std::string scheme : {"file://", "concat://", "subfile://", "async:file://"}) {
+    EXPECT_THAT(
+        [&] { LiveVideo(scheme + clip.path(), {}); },
+        testing::ThrowsMessage<std::runtime_error>(testing::StartsWith(scheme + clip.path() + ": not a stream")));
+  }
   LiveVideoOptions options;
   options.pace = -1;
   EXPECT_THROW(LiveVideo("clip.mp4", options), std::invalid_argument);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -19,6 +20,7 @@
 #include "geometry/base/check.h"
 #include "pipelines/track/track_request.h"
 #include "tests/data_tools/export/osc_twin.h"
+#include "tests/data_tools/video/tcp_source.h"
 #include "tests/pipelines/live/live_states.h"
 #include "tests/support/scratch_folder.h"
 #include "tracking/live/live_tracker.h"
@@ -172,22 +174,25 @@ TEST_F(RunLiveTest, PassesFramesOverRatherThanFallBehind) {
   // A detector that lets the clip arrive while it looks at its first frame.
   class WaitingDetector : public KnowingDetector {
    public:
-    explicit WaitingDetector(const std::atomic<bool>* go) : go_(go) {}
+    WaitingDetector(const std::atomic<bool>* go, std::vector<int>* reds) : go_(go), reds_(reds) {}
     std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames) override {
       while (!*go_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      reds_->push_back(frames[0].at(kWidth / 2, kHeight / 2).red);  // four times the frame's number
       return KnowingDetector::Detect(frames);
     }
 
    private:
     const std::atomic<bool>* go_;
+    std::vector<int>* reds_;
   };
   std::atomic<bool> go = false;
-  request_.make_detector = [&] { return std::make_unique<WaitingDetector>(&go); };
-  request_.video.pace = 1000;  // the whole clip in a millisecond and a half; it is read to its end meanwhile
+  std::vector<int> reds;
+  request_.make_detector = [&] { return std::make_unique<WaitingDetector>(&go, &reds); };
+  request_.video.pace = 30;  // the clip takes a twentieth of a second, and the detector two with its first frame
   PipelineCallbacks callbacks;
   std::atomic<int> polls = 0;
   callbacks.progress = [&](const std::string&, double) {
-    if (++polls > 10) go = true;  // half a second on
+    if (++polls > 40) go = true;
     return true;
   };
   std::vector<int64_t> indices;
@@ -201,7 +206,41 @@ TEST_F(RunLiveTest, PassesFramesOverRatherThanFallBehind) {
   EXPECT_EQ(report.poses + report.dropped + report.late, kFrames);
   EXPECT_GT(report.dropped + report.late, 0);
   EXPECT_TRUE(std::is_sorted(seconds.begin(), seconds.end()));
+  // After the first frame the newest is looked at, not the second.
+  ASSERT_GE(reds.size(), 1u);
+  EXPECT_TRUE(reds.size() == 1 || reds[1] > 20) << reds[1];
   for (size_t i = 0; i < indices.size(); ++i) EXPECT_EQ(indices[i], int64_t(i));
+}
+
+TEST_F(RunLiveTest, GoesOnWhenALostStreamIsFoundAgain) {
+  ASSERT_EQ(std::system(
+                ("ffmpeg -nostdin -v error -y -i " + request_.track.video + " -c:v mpeg2video " + (folder_ / "clip.ts"))
+                    .c_str()),
+            0);
+  const TcpSource source(ReadFileBytes(folder_ / "clip.ts"));
+  request_.track.video = source.url();
+  request_.video.pace = 1;
+  request_.video.retry_s = 0.01;
+  std::atomic<int> found = 0;
+  PipelineCallbacks callbacks;
+  std::vector<std::string> messages;
+  callbacks.message = [&](const std::string& line) {
+    messages.push_back(line);
+    if (line.ends_with("found again")) ++found;
+  };
+  callbacks.progress = [&](const std::string&, double) { return found < 2; };
+  double last = -1;
+  request_.on_frame = [&](const LiveState& state) {
+    EXPECT_GT(state.frame.timestamp, last);
+    last = state.frame.timestamp;
+  };
+  const RunLiveReport report = RunLive(request_, callbacks);
+  EXPECT_GE(report.losses, 2);
+  EXPECT_EQ(report.poses + report.dropped + report.late, report.frames);
+  EXPECT_GT(report.poses, 0);
+  ASSERT_GE(messages.size(), 4u);
+  EXPECT_EQ(messages[0], source.url() + ": the source ended; looking for it");
+  EXPECT_EQ(messages[1], source.url() + ": found again");
 }
 
 TEST_F(RunLiveTest, RefusesWhatItCannotDo) {
