@@ -82,7 +82,7 @@ SceneInputs SceneOf(const TrackPeopleRequest& request, const GivenInMemory& give
 }
 
 void FindMotion(const TrackPeopleRequest& request, const ChosenPeople& people, const PipelineCallbacks& callbacks,
-                StageTimes* clock, SceneInputs* scene, TrackPeopleReport* report) {
+                StageClock* clock, SceneInputs* scene, TrackPeopleReport* report) {
   if (!WhyNoCameraMotion(request.track).empty()) return;
   clock->Begin("camera");
   UseCameraMotion(request.track, people.clip.background, callbacks, scene, &report->camera_path);
