@@ -348,8 +348,9 @@ CameraMotion FindCameraMotion(const BackgroundTracks& tracks, const CameraMotion
                                        Tenths(SmallPixel(tracks)), " pixels");
     return motion;
   }
-  if (breaks > 1 && breaks > kMaxBrokenShare * static_cast<double>(tracks.anchors.size())) {
-    motion.why = Concatenate("the background is lost ", breaks, " times, after ", mean_points, " points at a time");
+  // Points that are few or lost again and again may be of somebody whom nobody detected.
+  if (mean_points < kFewestPoints || (breaks > 1 && breaks > kMaxBrokenShare * double(tracks.anchors.size()))) {
+    motion.why = Concatenate(mean_points, " points were seen at a time, and lost ", breaks, " times");
     return motion;
   }
   motion.kind = CameraMotionKind::kMoving;

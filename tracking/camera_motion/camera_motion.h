@@ -12,8 +12,8 @@
 /// Torr's criterion (GRIC, "An assessment of information criteria for motion model selection", 1997), which counts
 /// what its parameters may explain by chance:
 ///   Σ min(e²/σ², 2 (4 − d)) + n d log 4 + k log 4n   d = 2, k = 3: a rotation;  d = 3, k = 7: an epipolar geometry
-/// *Moving*: anything else that moves. *Unknown*: fewer than 16 points of background in half of the sights,
-/// or three anchors in ten begin after a loss.
+/// *Moving*: anything else that moves. *Unknown*: fewer than 16 points of background in half of the sights
+/// or, of what moves, in the mean, or three anchors in ten begin after a loss.
 #pragma once
 
 #include <string>
