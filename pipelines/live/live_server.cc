@@ -32,7 +32,7 @@ constexpr double kShapeStep = 0.2;
 bool IsLoopback(const std::string& host) { return host == "localhost" || host == "::1" || host.starts_with("127."); }
 
 /// The host of a request's "Host" header, without port and brackets.
-std::string HostNamed(std::string header) {
+std::string HostNamed(const std::string& header) {
   if (header.starts_with('[')) return header.substr(1, header.find(']') - 1);
   return header.substr(0, header.find(':'));
 }
