@@ -37,7 +37,7 @@ struct HandFitOptions {
   SteadyPrior wrist = {.sigma = 0.45, .length_s = 0.4};   ///< radians
   SteadyPrior forearm = {.sigma = 0.7, .length_s = 0.4};  ///< radians
   SteadyPrior place = {.sigma = 0.04, .length_s = 0.4};   ///< metres
-  double log_size_sigma = 0.1;
+  double log_size_sigma = 0.2;
   double min_confidence = 0.2;  ///< of points whose σ is not known; others are not used
   double min_length_px = 8;     ///< of a hand from wrist to middle knuckle, by the body; smaller ones are not used
   int max_iterations = 25;

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "geometry/biomechanics/hand_prior.h"
 #include "tests/support/synthetic_hands.h"
-#include "tests/support/toy_body.h"
+#include "tracking/clip/clip_fit.h"
+#include "tracking/people/track_people.h"
 
 namespace bodyloom::fit_hands_test {
 namespace {
@@ -154,6 +156,52 @@ TEST(FitHands, TinyHandsAreLeftAtRest) {
   EXPECT_EQ(summaries[0].why, "not seen, or too small; rests");
   const HandAngleVector angles = AnglesAt(made.track, HandOfSide(0), 3);
   for (const int angle : FreeHandAngles()) EXPECT_NEAR(angles[angle], BuiltinHandPrior().mean[angle], 3 * kDegree);
+}
+
+/// The same solve with hands and without them, of a clip and of people in a scene.
+TEST(FitHands, TheBodyIsAsWithoutHands) {
+  const SyntheticHands made = MakeSyntheticHands({.pose = "fist", .frames = 12});
+  KeypointSequence joints;
+  joints.convention = "coco17";
+  joints.names = {CocoNames().begin(), CocoNames().end()};
+  joints.timestamps = made.seen.timestamps;
+  joints.image_width = joints.image_height = 4000;
+  for (const MatrixX3d& places : made.track.coco17) {
+    for (Eigen::Index k = 0; k < places.rows(); ++k) {
+      Eigen::Vector2d pixel;
+      made.track.camera.Project(places.row(k), &pixel);
+      joints.points.push_back({float(pixel.x()), float(pixel.y()), 0.9F});
+    }
+  }
+  TrackSequenceInput without;
+  without.body = &BuiltinBodyWithHands();
+  without.keypoints = &joints;
+  without.camera = made.track.camera;
+  TrackSequenceInput with = without;
+  with.hands_and_face = &made.seen;
+  const TrackSequenceOptions options;
+  const std::vector<PlanEntry> plan = PlanHandsAndHead(with);
+  ASSERT_EQ(plan.size(), 2U);
+  EXPECT_TRUE(plan[0].what == "hands" && plan[0].runs);
+  EXPECT_TRUE(plan[1].what == "head by the face" && !plan[1].runs) << "no face is seen";
+  const TrackSequenceResult plain = FitClip(without, options), fitted = FitClip(with, options);
+  const TrackPeopleResult people = TrackPeople({with}, options);
+  ASSERT_TRUE(plain.summary.IsUsable());
+  EXPECT_TRUE(plain.summary.hands.empty());
+  ASSERT_EQ(fitted.summary.hands.size(), 2U);
+  EXPECT_TRUE(fitted.summary.hands[0].ran && fitted.summary.hands[1].ran);
+  EXPECT_EQ(people.people[0].track.motion.poses, fitted.track.motion.poses);
+  EXPECT_EQ(fitted.track.motion.trans, plain.track.motion.trans);
+  std::set<int> free;
+  for (size_t side = 0; side < 2; ++side) {
+    const HandSkeleton hand = HandOfSide(side);
+    free.insert(hand.joint.begin(), hand.joint.end());
+    free.insert({hand.wrist, BuiltinBodyWithHands().parents()[hand.wrist]});
+  }
+  for (int j = 0; j < BuiltinBodyWithHands().num_joints(); ++j) {
+    const bool same = fitted.track.motion.poses.middleCols<3>(3 * j) == plain.track.motion.poses.middleCols<3>(3 * j);
+    EXPECT_EQ(same, free.count(j) == 0) << j;
+  }
 }
 
 }  // namespace
