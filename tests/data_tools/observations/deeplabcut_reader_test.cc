@@ -30,7 +30,10 @@ constexpr const char* kMulti =
     "2,,,,,,,100,51,0.8,100,251,0.8,1,2,0.5\n";
 
 KeypointSequence Load(const std::string& text, int person = 0) {
-  return DetectionsFromBytes(text, "d.csv", {.person = person, .fps = 10});
+  LoadDetectionsOptions options;
+  options.person = person;
+  options.fps = 10;
+  return DetectionsFromBytes(text, "d.csv", options);
 }
 
 TEST(DeepLabCut, OnePersonByNames) {
