@@ -52,7 +52,7 @@ class ClipDetector {
         maximum_((rate_ > 0 ? std::min(rate_, fps) : fps) < kSlowFps ? 1 : FrameDetector::kFramesAtOnce),
         with_masks_(request.detector.blazepose.masks),
         all_masks_(request.all_masks),
-        mask_gate_(request.mask_rate),
+        part_gate_(request.part_rate),
         clip_(clip) {
     clip->people.convention = detector_->convention();
     if (request.follow_background) background_.emplace();
@@ -67,12 +67,12 @@ class ClipDetector {
     detected_.push_back(is_due ? 1 : 0);
     if (!is_due) {
       skipped_ = std::move(frame.image);
-      clip_->mask_is_due.push_back(0);
+      clip_->parts_are_due.push_back(0);
       return;
     }
     skipped_ = {};
     due_s_ = rate_ > 0 ? frame.time_s + 1 / rate_ : frame.time_s;
-    clip_->mask_is_due.push_back(mask_gate_.Passes(frame.time_s) ? 1 : 0);
+    clip_->parts_are_due.push_back(part_gate_.Passes(frame.time_s) ? 1 : 0);
     Take(std::move(frame.image), needs_mask);
     if (int(waiting_.size()) == maximum_) Detect();
   }
@@ -81,7 +81,7 @@ class ClipDetector {
   void Finish() {
     if (!skipped_.empty()) {
       detected_.back() = 1;
-      clip_->mask_is_due.back() = 1;
+      clip_->parts_are_due.back() = 1;
       Take(std::move(skipped_), true);
     }
     if (!waiting_.empty()) Detect();
@@ -94,12 +94,13 @@ class ClipDetector {
  private:
   void Take(Image image, bool needs_mask) {
     waiting_.push_back(std::move(image));
-    waiting_with_mask_.push_back(needs_mask || all_masks_ || clip_->mask_is_due.back() != 0 ? 1 : 0);
+    const bool is_due = clip_->parts_are_due.back() != 0;
+    waiting_parts_.push_back({.mask = needs_mask || all_masks_ || is_due, .hands_and_faces = is_due});
     places_.push_back(detected_.size() - 1);
   }
 
   void Detect() {
-    std::vector<std::vector<FramePerson>> found = detector_->Detect(waiting_, waiting_with_mask_);
+    std::vector<std::vector<FramePerson>> found = detector_->Detect(waiting_, waiting_parts_);
     for (size_t i = 0; i < found.size(); ++i) {
       const size_t place = places_[i];
       std::vector<CoveredRegion> covered;
@@ -115,7 +116,7 @@ class ClipDetector {
       if (rate_ > 0) SeeHowFast(place);
     }
     waiting_.clear();
-    waiting_with_mask_.clear();
+    waiting_parts_.clear();
     places_.clear();
   }
 
@@ -132,12 +133,12 @@ class ClipDetector {
   double rate_;
   int maximum_;
   bool with_masks_, all_masks_;
-  RateGate mask_gate_;
+  RateGate part_gate_;
   DetectedClip* clip_;
   std::optional<BackgroundTracker> background_;
   std::vector<char> detected_;
   std::vector<Image> waiting_;
-  std::vector<char> waiting_with_mask_;
+  std::vector<FrameParts> waiting_parts_;
   std::vector<size_t> places_;  ///< of those waiting
   Image skipped_;               ///< the latest frame, when it was not due
   double due_s_ = 0;

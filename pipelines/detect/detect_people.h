@@ -63,9 +63,9 @@ struct DetectPeopleRequest {
   /// Detection rate while everybody moves slowly, frames per second; other frames are interpolated (FillBetween()),
   /// without masks. 0: all frames.
   double detect_rate = 0;
-  /// Masks are due in so many frames a second of those that are detected; 0: in all. Other frames have masks only if
-  /// `all_masks` says so, or where they are kept as samples.
-  double mask_rate = 0;
+  /// Masks, hands and faces are due in so many frames a second of those that are detected; 0: in all. Other frames have
+  /// masks only if `all_masks` says so, or where they are kept as samples.
+  double part_rate = 0;
   bool all_masks = false;
   bool keep_samples = false;       ///< DetectedClip::samples
   bool follow_background = false;  ///< DetectedClip::background
@@ -75,7 +75,7 @@ struct DetectedClip {
   VideoInfo video;                               ///< of the turned frames
   PeopleSequence people;                         ///< the detector's convention; identities −1
   std::vector<std::vector<PackedLabels>> masks;  ///< [frame][person as in people.frames]; empty unless asked for
-  std::vector<char> mask_is_due;                 ///< [frame], 1 or 0: DetectPeopleRequest::mask_rate
+  std::vector<char> parts_are_due;               ///< [frame], 1 or 0: DetectPeopleRequest::part_rate
   PeopleDetectorSummary detector;
   FrameSamples samples;  ///< of the video, for the lines of the room; empty unless asked for
   /// Of the frames in which people were detected, for the camera's motion; empty unless asked for.

@@ -24,7 +24,7 @@ DetectPeopleRequest DetectionOf(const TrackSettings& request, int max_people) {
   detect.detector = request.detector;
   detect.detector.blazepose.masks = DetectsMasks(request);
   detect.detector.blazepose.max_people = max_people;
-  detect.mask_rate = request.solve.coarse_rate;  // the frames whose masks the tracker uses
+  detect.part_rate = request.solve.coarse_rate;  // the frames whose masks the tracker uses
   detect.all_masks = request.all_masks;
   detect.detect_rate = request.detect_rate;
   detect.keep_samples = request.use_lines;
@@ -51,7 +51,7 @@ DetectedObservations ObservationsOf(const DetectedClip& clip, const PersonTrack&
   if (DetectsMasks(request)) {
     PartLabelSequence mask = MaskOfPerson(clip, person);
     for (size_t t = 0; t < mask.frames.size(); ++t) {
-      if (clip.mask_is_due[t] == 0) mask.frames[t] = {};
+      if (clip.parts_are_due[t] == 0) mask.frames[t] = {};
     }
     seen.mask = CutFrames(std::move(mask), frames.first, frames.second);
   }

@@ -77,6 +77,52 @@ OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times
   return summary;
 }
 
+/// A hand or a face on the straight line from `before` to `after`; points that one of them lacks have confidence 0.
+template <typename Part>
+Part Between(const Part& before, const Part& after, double share) {
+  const auto blend = [share](float a, float b) { return float((1 - share) * a + share * b); };
+  Part part = before;
+  for (size_t k = 0; k < part.points.size(); ++k) {
+    const Keypoint &a = before.points[k], &b = after.points[k];
+    part.points[k] = {blend(a.x, b.x), blend(a.y, b.y), std::min(a.confidence, b.confidence)};
+  }
+  return part;
+}
+
+/// Adds to `filled` a part, get(frame), in frames between two that have it.
+template <typename Get>
+void FillPart(const HandsAndFaceSequence& seen, const Get& get, std::vector<HandsAndFace>* filled) {
+  constexpr double kLongestGap_s = 0.1;
+  int last = -1;
+  for (int t = 0; t < seen.num_frames(); ++t) {
+    if (!get((*filled)[size_t(t)])) continue;
+    const std::vector<double>& times = seen.timestamps;
+    const double gap = last < 0 ? 0 : times[size_t(t)] - times[size_t(last)];
+    for (int k = last + 1; last >= 0 && gap <= kLongestGap_s && k < t; ++k) {
+      const double share = (times[size_t(k)] - times[size_t(last)]) / gap;
+      get((*filled)[size_t(k)]) = Between(*get((*filled)[size_t(last)]), *get((*filled)[size_t(t)]), share);
+    }
+    last = t;
+  }
+}
+
+/// Hands and faces are looked for in fifteen frames a second (DetectPeopleRequest::part_rate); to be drawn without
+/// flicker, they get places in the frames between.
+HandsAndFaceSequence WithFramesBetween(HandsAndFaceSequence seen) {
+  std::vector<HandsAndFace> filled;
+  for (const auto& frame : seen.frames) filled.push_back(frame ? *frame : HandsAndFace());
+  for (const auto side : {HandsAndFace::kLeft, HandsAndFace::kRight}) {
+    FillPart(
+        seen, [side](HandsAndFace & frame) -> auto& { return frame.hands[side]; }, &filled);
+  }
+  FillPart(
+      seen, [](HandsAndFace & frame) -> auto& { return frame.face; }, &filled);
+  for (size_t t = 0; t < filled.size(); ++t) {
+    if (!filled[t].empty()) seen.frames[t] = std::make_shared<const HandsAndFace>(std::move(filled[t]));
+  }
+  return seen;
+}
+
 }  // namespace
 
 OverlaySummary WriteOverlayVideo(const std::string& path, const OverlayVideo& what) {
@@ -126,7 +172,8 @@ OverlaySummary WritePeopleOverlayVideo(const std::string& path, const PeopleOver
   for (const PersonInOverlay& person : what.people) {
     tracks.push_back(video != nullptr ? video->Moved(*person.track) : *person.track);
     detected.push_back(person.detected != nullptr ? *person.detected : KeypointSequence());
-    hands_and_face.push_back(person.hands_and_face != nullptr ? *person.hands_and_face : HandsAndFaceSequence());
+    hands_and_face.push_back(person.hands_and_face != nullptr ? WithFramesBetween(*person.hands_and_face)
+                                                              : HandsAndFaceSequence());
     if (video == nullptr) continue;
     detected.back() =
         MovedKeypoints(std::move(detected.back()), video->map(), video->info().width, video->info().height);

@@ -45,17 +45,23 @@ class BlazePoseFrames : public FrameDetector {
   [[nodiscard]] const KeypointConvention& convention() const override { return MediaPipe33(); }
 
   std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
-                                               std::span<const char> with_mask) override {
+                                               std::span<const FrameParts> parts) override {
     std::vector<std::vector<FramePerson>> result;
+    std::vector<char> with_mask;
+    for (const FrameParts& frame : parts) with_mask.push_back(frame.mask ? 1 : 0);
     std::vector<std::vector<DetectedPose>> detected = detector_.Detect(frames, with_mask);
     for (std::vector<DetectedPose>& poses : detected) {
       std::vector<FramePerson>& people = result.emplace_back();
       for (DetectedPose& pose : poses) people.push_back({ToPerson(pose), std::move(pose.mask)});
     }
-    if (hands_and_faces_) {
-      auto found = hands_and_faces_->Detect(frames, detected);
-      for (size_t f = 0; f < found.size(); ++f) {
-        for (size_t i = 0; i < found[f].size(); ++i) result[f][i].person.hands_and_face = std::move(found[f][i]);
+    // Frames that are to be looked at, one run of them after the other.
+    for (size_t f = 0, end = 0; hands_and_faces_ && f < frames.size(); f = end) {
+      const auto is_due = [&](size_t frame) { return parts.empty() || parts[frame].hands_and_faces; };
+      for (end = f + 1; end < frames.size() && is_due(end) == is_due(f);) ++end;
+      if (!is_due(f)) continue;
+      auto found = hands_and_faces_->Detect(frames.subspan(f, end - f), std::span(detected).subspan(f, end - f));
+      for (size_t k = 0; k < found.size(); ++k) {
+        for (size_t i = 0; i < found[k].size(); ++i) result[f + k][i].person.hands_and_face = std::move(found[k][i]);
       }
     }
     return result;
@@ -88,7 +94,7 @@ class YoloPoseFrames : public FrameDetector {
   [[nodiscard]] const KeypointConvention& convention() const override { return model_.convention(); }
 
   std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
-                                               std::span<const char> /*with_mask*/) override {
+                                               std::span<const FrameParts> /*parts*/) override {
     const Stopwatch watch;
     std::vector<std::vector<FramePerson>> result(frames.size());
     ParallelFor(int(frames.size()), options_.num_threads, [&](int i) {
@@ -125,7 +131,7 @@ class RtmPoseFrames : public FrameDetector {
   [[nodiscard]] const KeypointConvention& convention() const override { return model_.convention(); }
 
   std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
-                                               std::span<const char> /*with_mask*/) override {
+                                               std::span<const FrameParts> /*parts*/) override {
     const std::vector<std::vector<PersonBox>> boxes = Boxes(frames);
     const Stopwatch watch;
     std::vector<std::vector<FramePerson>> result(frames.size());

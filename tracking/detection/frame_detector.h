@@ -36,6 +36,11 @@ struct FramePerson {
   LabelImage mask;        ///< PeopleDetectorOptions::masks; empty when it was not asked for
 };
 
+/// Parts of people to look for in a frame, of those that the options name.
+struct FrameParts {
+  bool mask = true, hands_and_faces = true;
+};
+
 class FrameDetector {
  public:
   static constexpr int kFramesAtOnce = PeopleDetector::kFramesAtOnce;
@@ -44,9 +49,9 @@ class FrameDetector {
   /// Of the people's landmarks.
   [[nodiscard]] virtual const KeypointConvention& convention() const = 0;
   /// The next frames of the clip, all of one size: a group of 1 to kFramesAtOnce. Returns the people of each.
-  /// with_mask: as PeopleDetector::Detect().
+  /// parts: of each frame; empty: all parts.
   virtual std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
-                                                       std::span<const char> with_mask = {}) = 0;
+                                                       std::span<const FrameParts> parts = {}) = 0;
   [[nodiscard]] virtual PeopleDetectorSummary summary() const = 0;
 };
 

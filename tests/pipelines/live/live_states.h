@@ -63,7 +63,8 @@ inline std::vector<Keypoint> WavingLandmarks(int t, int width, int height) {
 class KnowingDetector : public FrameDetector {
  public:
   [[nodiscard]] const KeypointConvention& convention() const override { return Coco17(); }
-  std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames) override {
+  std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
+                                               std::span<const FrameParts> /*parts*/) override {
     std::vector<std::vector<FramePerson>> people(frames.size());
     for (size_t i = 0; i < frames.size(); ++i) {
       FramePerson& person = people[i].emplace_back();

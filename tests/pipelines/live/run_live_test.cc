@@ -175,10 +175,11 @@ TEST_F(RunLiveTest, PassesFramesOverRatherThanFallBehind) {
   class WaitingDetector : public KnowingDetector {
    public:
     WaitingDetector(const std::atomic<bool>* go, std::vector<int>* reds) : go_(go), reds_(reds) {}
-    std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames) override {
+    std::vector<std::vector<FramePerson>> Detect(std::span<const Image> frames,
+                                                 std::span<const FrameParts> /*parts*/) override {
       while (!*go_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       reds_->push_back(frames[0].at(kWidth / 2, kHeight / 2).red);  // four times the frame's number
-      return KnowingDetector::Detect(frames);
+      return KnowingDetector::Detect(frames, {});
     }
 
    private:
