@@ -158,7 +158,7 @@ TEST_F(BatchVerb, AManifestThatCannotBeUsedIsRefusedBeforeAnythingIsDone) {
 }
 
 TEST(BatchSettings, EveryOptionThatNamesAFileToReadIsTakenForAPath) {
-  const std::set<std::string> written = {"out", "overlay", "json", "report", "rig-out"};
+  const std::set<std::string> written = {"out", "overlay", "json", "report", "rig-out", "camera-path-out"};
   const std::regex option("--([a-z-]+) (FILE|PATH|DIR|[A-Z]+)?");
   int paths = 0;
   for (const char* verb : {"track", "run"}) {
