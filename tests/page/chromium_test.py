@@ -14,11 +14,11 @@ import sys
 import tempfile
 
 WORDS = ["chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-         "--hide-scrollbars", "--window-size=1000,1000", "--virtual-time-budget=60000", "--enable-logging=stderr"]
+         "--hide-scrollbars", "--window-size=1000,1000", "--enable-logging=stderr"]
 
 
-def chromium(*words):
-    run = subprocess.run([*WORDS, *words], capture_output=True, text=True, check=True, timeout=300)
+def chromium(*words, time="--virtual-time-budget=60000"):
+    run = subprocess.run([*WORDS, time, *words], capture_output=True, text=True, check=True, timeout=300)
     said = [line for line in run.stderr.splitlines() if "CONSOLE" in line]
     if said:
         sys.exit("on the console:\n" + "\n".join(said))

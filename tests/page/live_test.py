@@ -16,17 +16,7 @@ import sys
 import tempfile
 import urllib.request
 
-# No virtual time: it would stand still as long as the page listens.
-WORDS = ["chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-         "--hide-scrollbars", "--window-size=1000,1000", "--enable-logging=stderr"]
-
-
-def chromium(seconds, *words):
-    run = subprocess.run([*WORDS, f"--timeout={1000 * seconds}", *words], capture_output=True, text=True, check=True, timeout=300)
-    said = [line for line in run.stderr.splitlines() if "CONSOLE" in line]
-    if said:
-        sys.exit("on the console:\n" + "\n".join(said))
-    return run.stdout
+from chromium_test import chromium
 
 
 def main():
@@ -51,7 +41,7 @@ def main():
             url = re.fullmatch(r"page +(\S+)\n", first).group(1)
             def picture(fragment):
                 target = folder / "picture.png"
-                chromium(seconds, f"--screenshot={target}", url + fragment)
+                chromium(f"--screenshot={target}", url + fragment, time=f"--timeout={1000 * seconds}")
                 return target.read_bytes()
 
             with urllib.request.urlopen(url + "events", timeout=60) as events:

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_tools/video/live_video.h"
 
-#include <arpa/inet.h>
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -150,17 +148,11 @@ TEST(LiveVideo, AStreamThatEndsIsFoundAgain) {
 }
 
 TEST(LiveVideo, AStreamThatIsSilentIsLostAfterTheTimeout) {
-  const int silent = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address = {};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  ASSERT_EQ(bind(silent, reinterpret_cast<sockaddr*>(&address), size), 0);
-  ASSERT_EQ(listen(silent, 4), 0);
-  ASSERT_EQ(getsockname(silent, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  int port = 0;
+  const int silent = ListenAtLoopback(&port);
   LiveVideoOptions options;
   options.timeout_s = 0.05;
-  const std::string url = "tcp://user:secret@127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  const std::string url = "tcp://user:secret@127.0.0.1:" + std::to_string(port);
   EXPECT_THAT([&] { LiveVideo(url, options); },
               testing::ThrowsMessage<std::runtime_error>(testing::AllOf(
                   testing::StartsWith("tcp://user:***@127.0.0.1:"), testing::HasSubstr("not a stream"))));

@@ -14,18 +14,26 @@
 
 namespace bodyloom {
 
-/// At a free port of 127.0.0.1.
+/// A socket that listens at a free port of 127.0.0.1.
+inline int ListenAtLoopback(int* port) {
+  const int listener = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address = {};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  EXPECT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+  EXPECT_EQ(listen(listener, 4), 0);
+  EXPECT_EQ(getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  *port = ntohs(address.sin_port);
+  return listener;
+}
+
 class TcpSource {
  public:
-  explicit TcpSource(std::string bytes) : bytes_(std::move(bytes)), socket_(socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address = {};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&address), size), 0);
-    EXPECT_EQ(listen(socket_, 4), 0);
-    EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size), 0);
-    url_ = "tcp://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  explicit TcpSource(std::string bytes) : bytes_(std::move(bytes)) {
+    int port = 0;
+    socket_ = ListenAtLoopback(&port);
+    url_ = "tcp://127.0.0.1:" + std::to_string(port);
     thread_ = std::thread([this] {
       for (;;) {
         const int client = accept(socket_, nullptr, nullptr);
@@ -50,7 +58,7 @@ class TcpSource {
 
  private:
   std::string bytes_, url_;
-  int socket_;
+  int socket_ = -1;
   std::thread thread_;
 };
 
