@@ -3,7 +3,6 @@
 #pragma once
 
 #include <limits>
-#include <vector>
 
 namespace bodyloom {
 
@@ -27,13 +26,5 @@ class RateGate {
  private:
   double interval_s_, due_s_ = -std::numeric_limits<double>::infinity();
 };
-
-/// For each moment, whether it passes: 1 or 0.
-inline std::vector<char> PassGate(const std::vector<double>& times_s, double rate) {
-  RateGate gate(rate);
-  std::vector<char> passes;
-  for (const double time : times_s) passes.push_back(gate.Passes(time) ? 1 : 0);
-  return passes;
-}
 
 }  // namespace bodyloom

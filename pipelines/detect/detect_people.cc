@@ -82,7 +82,7 @@ class ClipDetector {
     if (!skipped_.empty()) {
       detected_.back() = 1;
       clip_->parts_are_due.back() = 1;
-      Take(std::move(skipped_), true);
+      Take(std::move(skipped_), false);
     }
     if (!waiting_.empty()) Detect();
     if (rate_ > 0) FillBetween(detected_, &clip_->people);

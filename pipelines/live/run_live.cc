@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipelines/live/run_live.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -22,6 +20,7 @@
 #include "data_tools/export/vmc_sender.h"
 #include "geometry/base/check.h"
 #include "geometry/base/mailbox.h"
+#include "geometry/base/stopwatch.h"
 #include "pipelines/detect/detect_people.h"
 #include "pipelines/files.h"
 #include "pipelines/live/line_writer.h"
@@ -43,13 +42,6 @@ constexpr size_t kWaitingLandmarks = 8;
 
 double MillisecondsSince(LiveClock::time_point from) {
   return std::chrono::duration<double, std::milli>(LiveClock::now() - from).count();
-}
-
-double ProcessorSeconds() {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 /// Delays by the millisecond, in bounded memory.
@@ -331,7 +323,7 @@ class LiveRun {
 
   RunLiveReport Run() {
     if (!outputs_.url().empty()) callbacks_.Message("page     " + outputs_.url());
-    const double processor_before = ProcessorSeconds();
+    StageClock clock;
     {
       std::vector<std::jthread> threads;
       for (void (LiveRun::*work)() : {&LiveRun::ReadFrames, &LiveRun::DetectFrames, &LiveRun::SolveFrames}) {
@@ -349,8 +341,9 @@ class LiveRun {
     if (report_.frames == 0) throw std::runtime_error(request_.track.video + ": no frame that can be decoded");
     report_.delay = delays_.Percentiles();
     report_.detected = detected_delays_.Percentiles();
+    clock.Record("live");
     report_.cpu_ms_per_frame =
-        1000 * (ProcessorSeconds() - processor_before) / double(std::max<int64_t>(1, looked_at_));
+        1000 * clock.processor_seconds().front().second / double(std::max<int64_t>(1, looked_at_));
     report_.peak_memory_mb = double(PeakMemoryBytes()) / 1e6;
     return report_;
   }

@@ -29,6 +29,7 @@ FittedPhoto FitPhoto(const PhotoFitSettings& fit, const std::string& path, const
                      StageClock* clock, std::shared_ptr<const BodyModel>* body) {
   PhotoFitSettings request = fit;
   request.video = path;
+  request.find_camera_motion = false;  // one picture
   CheckTrackSettings(request);
   FittedPhoto photo;
   photo.name = path;

@@ -104,6 +104,9 @@ void AgreeOnImageSize(const std::string& path, int width, int height, Camera* ca
   }
 }
 
+/// Live tracking does not use the camera's motion.
+bool LooksForMotion(const TrackRequest& request) { return !request.live_lag && WhyNoCameraMotion(request).empty(); }
+
 /// Hands and faces of given detections are used where they were asked for, and by bodies with fingers.
 bool UsesHands(const TrackRequest& request, const TrackInputs& inputs) {
   return request.detector.hands_and_faces != HandsAndFaceChoice::kOff || HasFingers(*inputs.body);
@@ -223,7 +226,9 @@ void UsePath(const TrackRequest& request, const PipelineCallbacks& callbacks, Tr
 
 /// Detects people in the video: the chosen one's landmarks, and the mask.
 void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
-  const DetectedClip clip = DetectForTracking(request, callbacks);
+  TrackSettings detection = request;
+  detection.find_camera_motion = LooksForMotion(request);
+  const DetectedClip clip = DetectForTracking(detection, callbacks);
   SayAdviceOnTurn(request.video, clip.people, callbacks);
   const PersonTrack person = PersonOf(clip.people, request.person, request.video);
   DetectedObservations seen = ObservationsOf(clip, person, WholeClip(clip), request, *inputs);
@@ -231,7 +236,7 @@ void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& cal
   inputs->hands_and_face = std::move(seen.hands_and_face);
   inputs->part_labels = std::move(seen.mask);
   UseFocal(request, &inputs->camera.camera);  // the lines need it
-  if (!request.live_lag && WhyNoCameraMotion(request).empty()) {
+  if (LooksForMotion(request)) {
     UseCameraMotion(request, clip.background, callbacks, inputs, &inputs->camera_path_report);
   }
   inputs->picture_vertical = VerticalOfClip(request, clip, *inputs);
@@ -302,7 +307,7 @@ TrackInputs LoadTrackInputs(const TrackRequest& given_request, const PipelineCal
   }
   UseFocal(request, &camera);
   if (!request.video.empty() && !DetectsPeople(request)) {
-    if (!request.live_lag && WhyNoCameraMotion(request).empty()) {
+    if (LooksForMotion(request)) {
       UseCameraMotion(request, BackgroundOfVideo(request, inputs.keypoints ? &*inputs.keypoints : nullptr, inputs),
                       callbacks, &inputs, &inputs.camera_path_report);
     }

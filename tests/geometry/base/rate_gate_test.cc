@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace bodyloom::rate_gate_test {
 namespace {
 
 std::vector<char> OfRate(double frames_per_second, int count, double rate) {
-  std::vector<double> times;
-  for (int t = 0; t < count; ++t) times.push_back(t / frames_per_second);
-  return PassGate(times, rate);
+  RateGate gate(rate);
+  std::vector<char> passes;
+  for (int t = 0; t < count; ++t) passes.push_back(gate.Passes(t / frames_per_second) ? 1 : 0);
+  return passes;
 }
 
 TEST(RateGate, LetsEveryNthFrameOfAVideoPass) {
