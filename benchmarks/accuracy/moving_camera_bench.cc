@@ -2,7 +2,8 @@
 /// bodyloom_bench_moving_camera: synthetic clips of a camera that moves, tracked with its path and without.
 ///
 ///   bodyloom_bench_moving_camera [--motions demo,FILE,…] [--frames 180] [--seeds 3]
-///                                [--cameras still,turning,hand-held,walking,orbit] [--json F]
+///                                [--cameras still,turning,hand-held,walking,orbit]
+///                                [--background points|furnished|blank|crowd] [--write FOLDER] [--json F]
 ///
 /// The first frames of each motion at 30 a second before a synthetic camera of known focal length
 /// (data_tools/synthesis/clips/synth_camera_path.h), with a detector's noise, toes and heels included. What the tracker
@@ -11,8 +12,10 @@
 ///   scale       the same without a length: translations divided by 3.7
 ///   noisy       where it was, off by smooth drifts of 0.5 degrees and 3 cm about each axis (time constant 1 s)
 ///   rotations   how it was turned, from where the first frame was seen
-///   found       what is found from background points (tracking/camera_motion/camera_motion.h) 3 to 9 m from
-///               the first camera, followed with 0.3 pixels of noise; 15 % of them move by themselves
+///   found       what is found from background points (tracking/camera_motion/camera_motion.h): with --background
+///               points 3 to 9 m from the first camera, followed with 0.3 pixels of noise, of which 15 % move by
+///               themselves; otherwise followed in the pixels of a rendered room (rendered_room.h), bodies masked,
+///               whose video --write keeps
 ///   none        nothing: it is taken to stand still
 /// Camera "turning" is the hand-held one without its translations.
 /// pa: PA-MPJPE of all joints, mm. w, wa, drift, slide: data_tools/evaluation/world_drift.h. ratio: scale found / true.
@@ -21,10 +24,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
+#include "benchmarks/accuracy/rendered_room.h"
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/evaluation/metrics.h"
 #include "data_tools/evaluation/world_drift.h"
@@ -35,12 +41,14 @@
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/smooth_curve.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
+#include "data_tools/video/video_writer.h"
 #include "geometry/base/units.h"
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
 #include "tests/tracking/camera_motion/synthetic_background.h"
 #include "tracking/camera_motion/camera_motion.h"
 #include "tracking/clip/clip_fit.h"
+#include "tracking/detection/background_tracker.h"
 
 namespace bodyloom {
 namespace {
@@ -96,8 +104,8 @@ std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<Cam
           seconds};
 }
 
-/// The path found from points of the background; empty if the camera seems to stand or to go somewhere.
-std::vector<CameraPose> FoundPath(const SynthClip& clip, uint64_t seed) {
+/// Points of a synthetic background.
+BackgroundTracks BackgroundPoints(const SynthClip& clip, uint64_t seed) {
   SyntheticBackground background;
   const Camera& camera = clip.truth.camera;
   background.width = camera.width;
@@ -115,10 +123,35 @@ std::vector<CameraPose> FoundPath(const SynthClip& clip, uint64_t seed) {
   background.pose = [&path](double t) {
     return path.empty() ? CameraPose() : path[static_cast<size_t>(std::lround(t * kFps))];
   };
+  return TracksOf(background);
+}
+
+/// Points followed in pixels of a rendered room, bodies masked; its video is written to `video`, if given.
+BackgroundTracks RoomPoints(const SynthClip& clip, RoomKind kind, uint64_t seed, const std::string& video) {
+  RenderedRoom room(BuiltinBody(), clip, kind, seed);
+  const Camera& camera = clip.truth.camera;
+  std::optional<VideoWriter> writer;
+  if (!video.empty()) writer.emplace(video, camera.width, camera.height, kFps);
+  BackgroundTracker tracker;
+  for (int t = 0; t < clip.truth.num_frames(); ++t) {
+    Image image;
+    CoveredRegion people;
+    room.Draw(t, &image, &people.mask);
+    tracker.Push(image, clip.truth.motion.timestamps[size_t(t)], {&people, 1});
+    if (writer) writer->Write(image);
+  }
+  if (writer) writer->Finish();
+  return tracker.Finish();
+}
+
+/// The path found from points of the background; empty if the camera seems to stand or to go somewhere.
+std::vector<CameraPose> FoundPath(const SynthClip& clip, const BackgroundTracks& background) {
+  const Camera& camera = clip.truth.camera;
   CameraMotionOptions options;
   options.focal = {.log_mean = std::log(camera.fx)};
   options.focal_known = true;
-  const CameraMotion motion = FindCameraMotion(TracksOf(background), options);
+  const CameraMotion motion = FindCameraMotion(background, options);
+  std::fprintf(stderr, "%s: %s\n", ToString(motion.kind).c_str(), motion.why.c_str());
   if (!motion.has_path() || motion.zoom > 1) return {};
   return SampleCameraPath(motion.path, clip.truth.motion.timestamps).camera_from_scene;
 }
@@ -149,7 +182,16 @@ void Run(const BenchArguments& arguments, const std::string& command) {
           std::fprintf(stderr, "%s %s %d %s\n", camera.c_str(), name.c_str(), seed, told.c_str());
         };
         add("none", nullptr, 1);
-        const std::vector<CameraPose> found = FoundPath(clip, options.seed);
+        const std::string& room = arguments.Text("background");
+        std::string video;
+        if (!arguments.Text("write").empty()) {
+          std::filesystem::create_directories(arguments.Text("write"));
+          video = arguments.Text("write") + "/" + room + "_" + camera + "_" +
+                  std::filesystem::path(name).stem().string() + "_" + std::to_string(seed) + ".mp4";
+        }
+        const std::vector<CameraPose> found =
+            FoundPath(clip, room == "points" ? BackgroundPoints(clip, options.seed)
+                                             : RoomPoints(clip, RoomKindFromString(room), options.seed, video));
         add("found", found.empty() ? nullptr : &found, 1);
         if (path.empty()) continue;
         add("path", &path, 1);
@@ -173,6 +215,8 @@ int main(int argc, char** argv) {
                               {"frames", "180"},
                               {"seeds", "3"},
                               {"cameras", "still,turning,hand-held,walking,orbit"},
+                              {"background", "points"},
+                              {"write", ""},
                               {"json", ""}},
                              bodyloom::Run);
 }
