@@ -18,6 +18,7 @@ using Eigen::VectorXd;
 constexpr double kMinRelativeDecrease = 1e-3, kMinDiagonal = 1e-6, kMaxDiagonal = 1e32;
 constexpr double kStartRadius = 1e4, kMaxRadius = 1e16, kMinRadius = 1e-32;
 constexpr int kMaxInvalidSteps = 5;
+constexpr double kMaxMissedDecrease = 3;  ///< of the tolerance, predicted of a step that ends the descent
 /// Minimum count of an iteration, since frozen frames take some time too.
 constexpr double kMinIteration = 0.25;
 constexpr double kEarlyTolerance = 1e-3;  ///< below it all keypoints are used (ChainOptions::early_dense)
@@ -185,7 +186,10 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
     const bool too_short = moved && std::sqrt(step.squaredNorm() + shared_step.squaredNorm()) <=
                                         options.parameter_tolerance * (x_norm + options.parameter_tolerance);
     const double tolerance = (thinned ? kEarlyTolerance : options.function_tolerance) * cost;
-    const bool converged = std::abs(change) <= tolerance;
+    // A step that was predicted to gain and did not is too long, not the last. Predictions of reused linearisations say
+    // nothing of that.
+    const bool converged =
+        std::abs(change) <= tolerance && (reusing || predicted_decrease <= kMaxMissedDecrease * tolerance);
     if (too_short || converged) {
       if (change > 0) {
         cost = candidate_cost;

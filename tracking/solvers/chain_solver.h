@@ -11,7 +11,9 @@
 ///   ends when |Δcost| ≤ function_tolerance · cost, ‖step‖ ≤ parameter_tolerance (‖x‖ + parameter_tolerance), the
 ///   gradient's largest component ≤ gradient_tolerance, max_iterations, or r < 1e-32; fails after five steps in a row
 ///   that could not be computed.
-/// One difference: the last step, too small to continue, is kept if it lowers the cost (Ceres discards it).
+/// Two differences: the last step, too small to continue, is kept if it lowers the cost (Ceres discards it); and a step
+/// that was predicted to lower the cost by more than three times the tolerance does not end the descent. It is too long
+/// (a limit of a joint lies between), and is rejected.
 /// Source of the rules: Ceres Solver 2.1 (trust_region_minimizer, levenberg_marquardt_strategy); Madsen, Nielsen,
 /// Tingleff, "Methods for non-linear least squares problems", 2004.
 #pragma once

@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <string>
 
 #include "tests/support/sequence_scene.h"
+#include "tracking/problem/frame_accumulator.h"
+#include "tracking/problem/frame_term.h"
 #include "tracking/solvers/solve_sequence.h"
 #include "tracking/terms/dense/dense.h"
 #include "tracking/terms/initialiser.h"
@@ -222,6 +226,36 @@ TEST(ChainSolver, AFrameThatNothingHoldsStaysWhereItIs) {
   for (int j = 0; j < 24; ++j) {
     EXPECT_LT((problem.states[4].rotations[j] - before.rotations[j]).norm(), 1e-14);
   }
+}
+
+/// ½ |x| of the translation's x as the square of sign(x) √|x|, whose undamped step leads to −x, at the same cost.
+class SquareRootTerm : public CopyableTerm<SquareRootTerm> {
+ public:
+  [[nodiscard]] std::string name() const override { return "square root"; }
+  [[nodiscard]] int num_rows() const override { return 1; }
+  void Add(FrameAccumulator* sums) const override {
+    const double x = sums->state().translation.x(), root = std::sqrt(std::abs(x));
+    sums->AddGroup(1, root * root, 0, 1);
+    if (!sums->derivatives() || root == 0) return;
+    const Eigen::Matrix<double, 1, 3> d(1 / (2 * root), 0, 0);
+    sums->AddBlockRows<1>(sums->layout().translation_column, d, Eigen::Matrix<double, 1, 1>(x < 0 ? -root : root));
+  }
+};
+
+TEST(ChainSolver, AStepThatMissesItsPredictedDecreaseIsNotTheLast) {
+  SequenceSceneOptions scene;
+  scene.frames = 1;
+  auto owner = MakeSequenceScene(scene);
+  SequenceProblem& problem = owner->problem;
+  problem.frames[0] = FrameData();
+  problem.frames[0].terms.Add(std::make_unique<SquareRootTerm>());
+  problem.states[0].translation.x() = 1;
+  SolveOptions options;
+  options.solver = SequenceSolver::kChain;
+  options.shape_constant = true;
+  options.function_tolerance = 1e-3;  // the damped step gains less
+  SolveSequence(&problem, options);
+  EXPECT_LT(std::abs(problem.states[0].translation.x()), 0.05);
 }
 
 TEST(ChainSolver, EarlyIterationsOnFewerPointsEndAtTheWholeProblem) {
