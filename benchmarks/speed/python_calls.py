@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Cost of a call from Python compared with the command: docs/python.md, "Figures".
+"""Cost of a call from Python compared with the command: docs/lab/run_speed.md, "Calls from Python".
 
 usage: PYTHONPATH=BUILD/python python_calls.py COMMAND AISTPP [--runs 5] [--frames 600]
   COMMAND: the program `bodyloom`; AISTPP: a folder with keypoints2d/ and cameras/
