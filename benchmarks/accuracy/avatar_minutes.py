@@ -1,26 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers of one person side by side after the same time on the same machine: the person of Gaussians, the same without
-a garment that is simulated, the published network, and the texture-mapped body.
+"""Renderers of one person side by side after the same time on the same machine: the person of Gaussians, the same
+without a garment that is simulated, the published network, and the texture-mapped body.
 
-usage: avatar_minutes.py --bodyloom build/release/apps/bodyloom --motions ../shared/data --out FOLDER [--minutes 2 10 60]
-       [--seeds 1 2 3] [--systems avatar bare published floor] [--size 512] [--person 3] [--threads 2] [--paced-by MINUTES]
-       [--report]
+usage: avatar_minutes.py --bodyloom build/release/apps/bodyloom --motions ../shared/data --out FOLDER
+       [--minutes 2 10 60] [--seeds 1 2 3] [--systems avatar bare published floor] [--size 512] [--person 3]
+       [--threads 2] [--paced-by MINUTES] [--report]
 
-A synthetic dancer in a skirt; motions that nobody learned from, at the speed of training, at half of it, and from 90 degrees
-aside. One minute of learning is one minute of steps; reading, placing Gaussians and fitting a garment (some 25 s) come on
-top. A person of Gaussians whose frames held out gain nothing more ends earlier. The published network takes as many steps as
-a short run of it says that the time has, its reading included. --seeds beyond the first are for --minutes 10 alone. FOLDER
-gets datasets, a folder a run, report.md and report.json; what is there is not made again.
+A synthetic dancer in a skirt; motions that nobody learned from, at the speed of training, at half of it, and from 90
+degrees aside. One minute of learning is one minute of steps; reading, placing Gaussians and fitting a garment (some 25
+s) come on top. A person of Gaussians whose frames held out gain nothing more ends earlier. The published network takes
+as many steps as a short run of it says that the time has, its reading included. --seeds beyond the first are for
+--minutes 10 alone. FOLDER gets datasets, a folder a run, report.md and report.json; what is there is not made again.
 
-A minute of two cores that nothing else runs on is worth steps, and a person of Gaussians that took as many is the same to
-the byte however many threads took them: --paced-by 2 takes, for every longer time, as many steps as the run of two minutes
-did in its own, so that they may run beside other work.
+A minute of two cores that nothing else runs on is worth steps, and a person of Gaussians that took as many is the same
+to the byte however many threads took them: --paced-by 2 takes, for every longer time, as many steps as the run of two
+minutes did in its own, so that they may run beside other work.
 
 Every system is scored by this program on the same frames: PSNR over black in the box of the true person and 32 pixels
-around it, and in the true person; SSIM (3dgs), LPIPS and tLPIPS (`bodyloom metrics --lpips`, random features) in windows of
-one size that follow the person; flicker, the mean over the true person of |(R_t - R_t-1) - (A_t - A_t-1)| of 1; IoU of the
-outline and of the skirt. The texture-mapped body has no skirt of its own and takes no time to speak of.
+around it, and in the true person; SSIM (3dgs), LPIPS and tLPIPS (`bodyloom metrics --lpips`, random features) in
+windows of one size that follow the person; flicker, the mean over the true person of |(R_t - R_t-1) - (A_t - A_t-1)| of
+1; IoU of the outline and of the skirt. The texture-mapped body has no skirt of its own and takes no time to speak of.
 """
 import argparse
 import json
@@ -37,8 +37,9 @@ SYSTEMS = ("avatar", "bare", "published", "floor")
 WITHOUT = {"avatar": [], "bare": ["--without", "garment"]}
 NAMES = {"avatar": "avatar", "bare": "without garment", "published": "published network", "floor": "textured body"}
 BOTTOM, MARGIN = 2, 32
-SCORES = (("psnr_box_db", "PSNR box, dB", 2), ("psnr_person_db", "PSNR person, dB", 2), ("ssim", "SSIM", 3), ("lpips", "LPIPS", 4),
-          ("tlpips", "tLPIPS", 4), ("flicker", "flicker", 4), ("outline_iou", "outline IoU", 3), ("skirt_iou", "skirt IoU", 3))
+SCORES = (("psnr_box_db", "PSNR box, dB", 2), ("psnr_person_db", "PSNR person, dB", 2), ("ssim", "SSIM", 3),
+          ("lpips", "LPIPS", 4), ("tlpips", "tLPIPS", 4), ("flicker", "flicker", 4), ("outline_iou", "outline IoU", 3),
+          ("skirt_iou", "skirt IoU", 3))
 
 
 class Truth:
@@ -85,8 +86,8 @@ def score(o, truth, images, labels, folder):
         (folder / name).mkdir(parents=True, exist_ok=True)
         write_numbered(folder / name, list(truth.windows(pictures)))
     report = folder / "metrics.json"
-    call([o.bodyloom, "metrics", "--truth", str(folder / "truth"), "--result", str(folder / "result"), "--preset", "3dgs", "--lpips", "--json",
-          str(report), "--quiet"], folder / "log.txt")
+    call([o.bodyloom, "metrics", "--truth", str(folder / "truth"), "--result", str(folder / "result"), "--preset",
+          "3dgs", "--lpips", "--json", str(report), "--quiet"], folder / "log.txt")
     metrics = next(iter(json.loads(report.read_text(encoding="utf-8"))["kinds"].values()))["metrics"]
     for key in ("ssim", "lpips", "tlpips"):
         scores[key] = next(value["mean"] for name, value in metrics.items() if name.startswith(key))
@@ -108,8 +109,9 @@ def steps_for(o, dances, minutes):
         for steps in (4, 24):
             run = o.out / f"published_probe_{steps}"
             begin = time.monotonic()
-            call([o.bodyloom, "train", "motion", "--data", str(dances), "--out", str(run), "--profile", "cpu", "--steps", str(steps),
-                  "--validate-every", "1000000", "--threads", str(o.threads)], o.out / "published_probe.log")
+            call([o.bodyloom, "train", "motion", "--data", str(dances), "--out", str(run), "--profile", "cpu",
+                  "--steps", str(steps), "--validate-every", "1000000", "--threads", str(o.threads)],
+                 o.out / "published_probe.log")
             seconds.append(time.monotonic() - begin)
         step = (seconds[1] - seconds[0]) / 20
         known.write_text(json.dumps({"step": step, "begin": max(0.0, seconds[0] - 4 * step)}), encoding="utf-8")
@@ -149,8 +151,8 @@ def measure(o, system, dances, sets, minutes, seed):
     for name, folder in sets.items():
         drawn = run / f"set_{name}"
         more = ["--out", str(run / f"{name}.mp4"), "--full-size"] if system == "published" else []
-        call([o.bodyloom, "animate", "motion" if system == "published" else "avatar", "--run", str(run), "--data", str(folder), "--set",
-              str(drawn), "--threads", str(o.threads), *more], run / "log.txt")
+        call([o.bodyloom, "animate", "motion" if system == "published" else "avatar", "--run", str(run), "--data",
+              str(folder), "--set", str(drawn), "--threads", str(o.threads), *more], run / "log.txt")
         scores[name] = score_set(o, Truth(o, folder), drawn, run / f"windows_{name}")
     done.write_text(json.dumps(scores, indent=1) + "\n", encoding="utf-8")
 
@@ -164,13 +166,13 @@ def measure_floor(o, dances, sets):
     print(f"{run.name} …", flush=True)
     begin = time.monotonic()
     texture = run / "texture.png"
-    call([o.bodyloom, "texture", "--track", str(dances / "track.npz"), "--video", str(dances / "images"), "--every", "4", "--fill", "--out",
-          str(texture)], run / "log.txt")
+    call([o.bodyloom, "texture", "--track", str(dances / "track.npz"), "--video", str(dances / "images"), "--every",
+          "4", "--fill", "--out", str(texture)], run / "log.txt")
     scores = {"seconds": time.monotonic() - begin}
     for name, folder in sets.items():
         drawn = run / f"{name}.npz"
-        call([o.bodyloom, "render", "--track", str(folder / "track.npz"), "--what", "texture", "--texture", str(texture), "--out", str(drawn),
-              "--quiet"], run / "log.txt")
+        call([o.bodyloom, "render", "--track", str(folder / "track.npz"), "--what", "texture", "--texture",
+              str(texture), "--out", str(drawn), "--quiet"], run / "log.txt")
         with np.load(drawn) as arrays:
             mask = arrays["mask"] > 0
             images, labels = arrays["rgb"] * mask[..., None], mask.astype(np.uint8)
@@ -182,15 +184,18 @@ def report(o):
     found = []
     for path in sorted(o.out.glob("*/scores.json")):
         system, minutes, seed = path.parent.name.split("_")
-        found.append({"system": system, "minutes": float(minutes), "seed": int(seed), **json.loads(path.read_text(encoding="utf-8"))})
+        found.append({"system": system, "minutes": float(minutes), "seed": int(seed),
+                      **json.loads(path.read_text(encoding="utf-8"))})
     lines = []
     for name in SETS:
-        lines += [f"**{name}**", "", "| minutes | | seeds | " + " | ".join(label for _, label, _ in SCORES) + " |", "|---|---|---|" + "---|" * len(SCORES)]
+        lines += [f"**{name}**", "", "| minutes | | seeds | " + " | ".join(label for _, label, _ in SCORES) + " |",
+                  "|---|---|---|" + "---|" * len(SCORES)]
         for minutes in [0.0, *o.minutes]:
             for system in SYSTEMS:
                 runs = [f for f in found if f["system"] == system and f["minutes"] == minutes]
                 if runs:
-                    cells = " | ".join("" if system == "floor" and key == "skirt_iou" else text([r[name][key] for r in runs], digits)
+                    cells = " | ".join("" if system == "floor" and key == "skirt_iou"
+                                       else text([r[name][key] for r in runs], digits)
                                        for key, _, digits in SCORES)
                     lines.append(f"| {minutes:g} | {NAMES[system]} | {len(runs)} | {cells} |")
         lines.append("")
@@ -212,7 +217,8 @@ def main():
     parser.add_argument("--size", type=int, default=512)
     parser.add_argument("--person", type=int, default=3, help="seed of the dancer")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--paced-by", type=float, default=0, metavar="MINUTES", help="the shorter runs that say how many steps a time has")
+    parser.add_argument("--paced-by", type=float, default=0, metavar="MINUTES",
+                        help="the shorter runs that say how many steps a time has")
     parser.add_argument("--report", action="store_true", help="only print what there is")
     o = parser.parse_args()
     o.garment, o.clothes, o.material = "skirt", "patterned", "cotton"

@@ -5,9 +5,10 @@
 usage: PYTHONPATH=BUILD/python bone_lengths.py AISTPP [--views c01 …]
   AISTPP: a folder with keypoints2d/, keypoints3d/ and cameras/
 
-PA-MPJPE of the 17 COCO joints, mm: of the track; with upper arms, forearms, thighs and shins of the truth's length (median over the
-clip, one scale), directions as they are; with trunk, shoulders, hips and head as well. Then each bone's length in the track over
-the truth's. It is no bound on what the solve would make of a body with such bones, only on what lengths alone explain.
+PA-MPJPE of the 17 COCO joints, mm: of the track; with upper arms, forearms, thighs and shins of the truth's length
+(median over the clip, one scale), directions as they are; with trunk, shoulders, hips and head as well. Then each
+bone's length in the track over the truth's. It is no bound on what the solve would make of a body with such bones, only
+on what lengths alone explain.
 """
 import argparse
 import pathlib
@@ -16,7 +17,8 @@ import pickle
 import numpy as np
 
 LIMBS = ((5, 7), (7, 9), (6, 8), (8, 10), (11, 13), (13, 15), (12, 14), (14, 16))
-NAMES = ("l upper arm", "l forearm", "r upper arm", "r forearm", "l thigh", "l shin", "r thigh", "r shin", "hips", "shoulders", "trunk", "nose")
+NAMES = ("l upper arm", "l forearm", "r upper arm", "r forearm", "l thigh", "l shin", "r thigh", "r shin", "hips",
+         "shoulders", "trunk", "nose")
 
 
 def spans(joints):
@@ -66,7 +68,8 @@ def main():
             ratio = np.nanmedian(spans(joints), axis=0) / np.nanmedian(spans(truth), axis=0)
             ratio /= ratio[:len(LIMBS)].mean()
             limbs = np.where(np.arange(len(NAMES)) < len(LIMBS), 1 / ratio, 1)
-            rows.append([pa_mpjpe_mm(j, truth) for j in (joints, with_lengths(joints, limbs), with_lengths(joints, 1 / ratio))])
+            rows.append([pa_mpjpe_mm(j, truth) for j in (joints, with_lengths(joints, limbs),
+                                                         with_lengths(joints, 1 / ratio))])
             print(f"{recording.stem[:28] + ' ' + view:32} " + " ".join(f"{v:7.1f}" for v in rows[-1]) + "   " +
                   " ".join(f"{r:.2f}" for r in ratio), flush=True)
     print(f"{'mean':32} " + " ".join(f"{v:7.1f}" for v in np.mean(rows, axis=0)))

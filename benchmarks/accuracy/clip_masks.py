@@ -3,14 +3,15 @@
 """Masks of people in clips from a still camera against the truth: as the network gives them, and cut from what stands
 behind the people.
 
-usage: clip_masks.py --bodyloom build/release/apps/bodyloom --motions ../shared/data --out FOLDER [--frames 100] [--size 448]
+usage: clip_masks.py --bodyloom build/release/apps/bodyloom --motions ../shared/data --out FOLDER [--frames 100]
+       [--size 448]
 
-Synthetic people (`synth-person`), one of each garment, laid over a picture that stands still with noise of 3 levels (the
-last clip is as `synth-person` makes it, with a background that drifts: there masks are to stay); BlazePose finds them
-(`detect --mask`, with and without --coarse-masks), so networks are needed (./dev models). Per clip: IoU with the true
-person, mean and least over the frames that are detected; the share of the person that is missing and what else is in the
-mask, by the person's area; seconds of the command. FOLDER gets the clips, masks and report.md. --motions is a folder with
-motion/cmu_bvh and aistpp/motions.
+Synthetic people (`synth-person`), one of each garment, laid over a picture that stands still with noise of 3 levels
+(the last clip is as `synth-person` makes it, with a background that drifts: there masks are to stay); BlazePose finds
+them (`detect --mask`, with and without --coarse-masks), so networks are needed (./dev models). Per clip: IoU with the
+true person, mean and least over the frames that are detected; the share of the person that is missing and what else is
+in the mask, by the person's area; seconds of the command. FOLDER gets the clips, masks and report.md. --motions is a
+folder with motion/cmu_bvh and aistpp/motions.
 """
 import argparse
 import json
@@ -22,8 +23,9 @@ from motion_descriptors import motion_file
 from pixels import decoded, masks, write_numbered
 from runs import call
 
-CLIPS = [("suit", 7, "aistpp/motions/gJS_sBM_cAll_d03_mJS2_ch07"), ("suit", 5, "aistpp/motions/gBR_sBM_cAll_d06_mBR2_ch06"),
-         ("suit", 9, "motion/cmu_bvh/05_02"), ("skirt", 3, "motion/cmu_bvh/05_17"), ("coat", 11, "motion/cmu_bvh/05_06"),
+CLIPS = [("suit", 7, "aistpp/motions/gJS_sBM_cAll_d03_mJS2_ch07"),
+         ("suit", 5, "aistpp/motions/gBR_sBM_cAll_d06_mBR2_ch06"), ("suit", 9, "motion/cmu_bvh/05_02"),
+         ("skirt", 3, "motion/cmu_bvh/05_17"), ("coat", 11, "motion/cmu_bvh/05_06"),
          ("skirt", 12, "aistpp/motions/gJS_sBM_cAll_d03_mJS2_ch07"), ("suit", 15, "motion/cmu_bvh/05_02")]
 KINDS = {"network": ["--coarse-masks"], "cut": []}
 
@@ -65,18 +67,21 @@ def main():
     for garment, person, motion in CLIPS:
         clip = o.out / f"{garment}_{person}"
         if not (clip / "person.json").exists():
-            call([o.bodyloom, "synth-person", "--out", str(clip), "--seed", str(person), "--garment", garment, "--clothes", "patterned",
-                  "--size", str(o.size), "--frames", str(o.frames), "--motion", motion_file(o.motions, motion), "--quiet"], o.out / "log.txt")
+            call([o.bodyloom, "synth-person", "--out", str(clip), "--seed", str(person), "--garment", garment,
+                  "--clothes", "patterned", "--size", str(o.size), "--frames", str(o.frames), "--motion",
+                  motion_file(o.motions, motion), "--quiet"], o.out / "log.txt")
         drifts = (garment, person, motion) == CLIPS[-1]
         video = clip / "images" if drifts else still_video(o, clip)
         truth = decoded(clip / "labels" / "%06d.png", o.size, o.size)[..., 0] > 0
         for kind, more in KINDS.items():
             mask, report = o.out / f"{clip.name}_{kind}.npz", o.out / f"{clip.name}_{kind}.json"
-            call([o.bodyloom, "detect", "--video", str(video), "--mask", str(mask), "--json", str(report), *more], o.out / "log.txt")
+            call([o.bodyloom, "detect", "--video", str(video), "--mask", str(mask), "--json", str(report), *more],
+                 o.out / "log.txt")
             told = json.loads(report.read_text(encoding="utf-8"))
             iou, minimum, missing, beside = score(masks(mask) > 0, truth)
             name = kind if kind == "network" or told["masks_cut"] else "left as they are"
-            lines.append(f"| {garment}, {motion.split('/')[-1]} | {name} | {iou:.4f} | {minimum:.3f} | {100 * missing:.2f} % | {100 * beside:.2f} % | "
+            lines.append(f"| {garment}, {motion.split('/')[-1]} | {name} | {iou:.4f} | {minimum:.3f} | "
+                         f"{100 * missing:.2f} % | {100 * beside:.2f} % | "
                          f"{told['total_seconds']:.1f} |")
             print(lines[-1], flush=True)
     (o.out / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")

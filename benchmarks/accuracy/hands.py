@@ -9,9 +9,10 @@ usage: hands.py COMMAND POSE2SIM DANCE OUT
   OUT       folder for detections and smaller videos; what is there already is used
 
 Two cameras: a point's distance from the other camera's epipolar line, to first order divided by the root of the sum of
-squares of its derivatives by all four pixels (Sampson's), so that independent errors of one pixel an axis give a spread of
-one pixel; relative to the hand's length, a third of its region's side, which the largest standard deviation of the
-points tells. Directions of bones by the points in metres are compared in the calibration's axes. Wrists: distance from OpenPose's. ffmpeg makes the smaller videos.
+squares of its derivatives by all four pixels (Sampson's), so that independent errors of one pixel an axis give a spread
+of one pixel; relative to the hand's length, a third of its region's side, which the largest standard deviation of the
+points tells. Directions of bones by the points in metres are compared in the calibration's axes. Wrists: distance from
+OpenPose's. ffmpeg makes the smaller videos.
 """
 import json
 import pathlib
@@ -149,7 +150,8 @@ def main():
             print(f"  {name} {('left', 'right')[side]:5} {seen.sum():3} frames  {np.median(errors[0]):5.1f} "
                   f"{np.median(errors[1]):5.1f}")
 
-    print("smaller pictures: length px, found of those found at full size, points' median distance / length, 90th percentile")
+    print("smaller pictures: length px, found of those found at full size, points' median distance / length, 90th "
+          "percentile")
     for scale in SCALES:
         for name, video in videos.items():
             large = full[name][0]

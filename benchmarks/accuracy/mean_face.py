@@ -5,14 +5,15 @@
 usage: mean_face.py DETECTIONS.npz...
 
 Each face's 68 points (x, y and depth in pixels) are moved, turned and scaled onto the mean, which is mirrored onto
-itself; people count alike. Axes: x to the person's left, y down, z to the back of the head; eyes level, the bridge of the
-nose to the chin upright; the root mean square distance from the middle is 1.
+itself; people count alike. Axes: x to the person's left, y down, z to the back of the head; eyes level, the bridge of
+the nose to the chin upright; the root mean square distance from the middle is 1.
 """
 import sys
 
 import numpy as np
 
-MIRROR = np.array([16 - i for i in range(17)] + [26, 25, 24, 23, 22, 21, 20, 19, 18, 17, 27, 28, 29, 30, 35, 34, 33, 32, 31]
+MIRROR = np.array([16 - i for i in range(17)]
+                  + [26, 25, 24, 23, 22, 21, 20, 19, 18, 17, 27, 28, 29, 30, 35, 34, 33, 32, 31]
                   + [45, 44, 43, 42, 47, 46, 39, 38, 37, 36, 41, 40, 54, 53, 52, 51, 50, 49, 48, 59, 58, 57, 56, 55]
                   + [64, 63, 62, 61, 60, 67, 66, 65])
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The motion-dependent renderer told of motion by the body's surface (normals and velocities in UV) or as 2D systems are
-(ten frames of dense UV coordinates and keypoints), over the amount of data and over how much a motion is like one that
-was trained on: Fig. 6 and 7 and Table 2 of Yoon et al., CVPR 2022, on a synthetic dancer.
+"""The motion-dependent renderer told of motion by the body's surface (normals and velocities in UV) or as 2D systems
+are (ten frames of dense UV coordinates and keypoints), over the amount of data and over how much a motion is like one
+that was trained on: Fig. 6 and 7 and Table 2 of Yoon et al., CVPR 2022, on a synthetic dancer.
 
 usage: motion_descriptors.py --bodyloom build/release/apps/bodyloom --motions ../shared/data --out FOLDER
        [--shares 0.1 0.25 0.5 1] [--seeds 1 2 3] [--descriptors surface dense2d] [--steps 2000] [--profile tiny]
@@ -41,8 +41,8 @@ def make_dancer(o, name, motions, frames, speeds):
     folder = o.out / name
     if (folder / "person.json").exists():
         return folder
-    arguments = [o.bodyloom, "synth-person", "--out", str(folder), "--first", "30", "--frames", str(frames), "--fps", "30",
-                 "--size", "200", "--seed", "3", "--garment", "skirt", "--threads", "1", "--quiet"]
+    arguments = [o.bodyloom, "synth-person", "--out", str(folder), "--first", "30", "--frames", str(frames), "--fps",
+                 "30", "--size", "200", "--seed", "3", "--garment", "skirt", "--threads", "1", "--quiet"]
     for motion in motions:
         arguments += ["--motion", motion_file(o.motions, motion)]
     for speed in speeds:
@@ -71,7 +71,8 @@ def train_and_score(o, dances, test, descriptor, share, seed):
     call(train, run / "log.txt")
     # Written last, and whole or not at all: a run that has it is finished.
     call([o.bodyloom, "animate", "motion", "--run", str(run), "--data", str(test), "--like", str(dances), "--out",
-          str(run / "test.mp4"), "--frames", str(run / "frames.csv"), "--json", str(run / "scores.json"), "--threads", "1"],
+          str(run / "test.mp4"), "--frames", str(run / "frames.csv"), "--json", str(run / "scores.json"), "--threads",
+          "1"],
          run / "log.txt")
 
 
@@ -94,8 +95,8 @@ def report(o):
                 with open(run / "frames.csv", encoding="utf-8", newline="") as lines:
                     scores["frames"] = list(csv.DictReader(lines))
                 found[descriptor, share, seed] = scores
-    lines = [f"{len(found)} of {len(o.descriptors) * len(o.shares) * len(o.seeds)} runs; profile {o.profile}, {o.steps} "
-             f"steps of batch {o.batch}; mean ± standard deviation over seeds", ""]
+    lines = [f"{len(found)} of {len(o.descriptors) * len(o.shares) * len(o.seeds)} runs; profile {o.profile}, "
+             f"{o.steps} steps of batch {o.batch}; mean ± standard deviation over seeds", ""]
     lines += ["Error over the amount of data (Fig. 7, Table 2):", "",
               "| descriptor | share | seeds | " + " | ".join(name for _, name in SCORES) + " |",
               "|---|---|---|" + "---|" * len(SCORES)]
@@ -112,10 +113,11 @@ def report(o):
             if pairs:
                 wins = [sum((a[key] > b[key]) if key in LARGER_IS_BETTER else (a[key] < b[key]) for a, b in pairs)
                         for key, _ in SCORES]
-                lines.append(f"| {first} is better with | {share:g} | {len(pairs)} | " + " | ".join(map(str, wins)) + " |")
+                lines.append(f"| {first} is better with | {share:g} | {len(pairs)} | " + " | ".join(map(str, wins))
+                             + " |")
     lines += ["", "Error over similarity of motion (Fig. 6): the test's frames in quarters by the correlation of their "
-              "descriptor with the nearest frame trained on, the least similar first; and the slope of LPIPS over it:", "",
-              "| descriptor | share | L1 | LPIPS | slope of L1 | slope of LPIPS |", "|---|---|---|---|---|---|"]
+              "descriptor with the nearest frame trained on, the least similar first; and the slope of LPIPS over it:",
+              "", "| descriptor | share | L1 | LPIPS | slope of L1 | slope of LPIPS |", "|---|---|---|---|---|---|"]
     for share in o.shares:
         for descriptor in o.descriptors:
             runs = [s for (d, a, _), s in found.items() if (d, a) == (descriptor, share)]
@@ -144,7 +146,8 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--shares", type=float, nargs="+", default=[0.1, 0.25, 0.5, 1.0])
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
-    parser.add_argument("--descriptors", nargs="+", default=["surface", "dense2d"], choices=["surface", "dense2d", "none"])
+    parser.add_argument("--descriptors", nargs="+", default=["surface", "dense2d"],
+                        choices=["surface", "dense2d", "none"])
     parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--batch", type=int, default=2)
     parser.add_argument("--profile", default="tiny")

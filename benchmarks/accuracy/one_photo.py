@@ -33,14 +33,14 @@ from runs import call, exit_code, score_of, text
 BASELINES = ["ip", "warp", "warpcond", "no-int"]
 ABLATIONS = ["sil", "gar", "source-silhouette", "source-labels", "latent", "kl", "pseudo-image"]
 TRACK = "tracked.npz"
-GIVEN = {"true": [], "labels": ["--score-labels", "estimated"], "iuv": ["--score-iuv"], "bodies": ["--score-tracks", TRACK],
-         "all": ["--score-labels", "estimated", "--score-tracks", TRACK]}
+GIVEN = {"true": [], "labels": ["--score-labels", "estimated"], "iuv": ["--score-iuv"],
+         "bodies": ["--score-tracks", TRACK], "all": ["--score-labels", "estimated", "--score-tracks", TRACK]}
 UNTRAINED = {"floor": ["--score-floor"], "person": []}
 NO_IUV = {"person"}  # it takes bodies
 WINDOW = {"tiny": 128, "cpu": 256, "paper": 256}  # pixels a side, of the networks' pictures: of all that are compared
-SCORES = [("image_l1", "L1", 4), ("psnr_db", "PSNR dB", 2), ("ssim", "SSIM", 4), ("silhouette_iou", "silhouette IoU", 3),
-          ("label_iou", "labels IoU", 3), ("lpips", "LPIPS", 4), ("lpips_deviation", "deviation", 4),
-          ("contextual", "CS", 3)]
+SCORES = [("image_l1", "L1", 4), ("psnr_db", "PSNR dB", 2), ("ssim", "SSIM", 4),
+          ("silhouette_iou", "silhouette IoU", 3), ("label_iou", "labels IoU", 3), ("lpips", "LPIPS", 4),
+          ("lpips_deviation", "deviation", 4), ("contextual", "CS", 3)]
 
 
 def make_people(o):
@@ -48,8 +48,8 @@ def make_people(o):
     if not (people / "people.json").exists():
         print("people …", flush=True)
         call([o.bodyloom, "synth-people", "--motions", o.motions, "--out", str(people), "--people", str(o.people),
-              "--actions", str(o.actions), "--views", "3", "--frames", str(o.frames), "--size", str(o.size), "--threads",
-              str(o.threads), "--quiet"] + shlex.split(o.people_options), o.out / "people.log")
+              "--actions", str(o.actions), "--views", "3", "--frames", str(o.frames), "--size", str(o.size),
+              "--threads", str(o.threads), "--quiet"] + shlex.split(o.people_options), o.out / "people.log")
     return people
 
 
@@ -63,8 +63,9 @@ def leave_out(o, listing, dataset, person, clip):
 
 
 def track_test_people(o, people):
-    """Bodies as they are estimated of anybody: in every clip of a test person, TRACK beside the true track. A clip in which
-    the detector does not follow the person through all frames (bent double, from behind) leaves the dataset, whatever is given."""
+    """Bodies as they are estimated of anybody: in every clip of a test person, TRACK beside the true track. A clip in
+    which the detector does not follow the person through all frames (bent double, from behind) leaves the dataset,
+    whatever is given."""
     listing = people / "people.json"
     dataset = json.loads(listing.read_text(encoding="utf-8"))
     for person in dataset["people"]:
@@ -74,8 +75,8 @@ def track_test_people(o, people):
                 continue
             print(f"bodies of {clip} …", flush=True)
             out = folder / "tracking"
-            code = exit_code([o.bodyloom, "run", str(folder / "images"), "--out", str(out), "--people", "1", "--no-overlay",
-                              "--min-seconds", "0"], o.out / "people.log")
+            code = exit_code([o.bodyloom, "run", str(folder / "images"), "--out", str(out), "--people", "1",
+                              "--no-overlay", "--min-seconds", "0"], o.out / "people.log")
             lines = (o.out / "people.log").read_text(encoding="utf-8").splitlines()
             if code != 0 and ": nobody " not in lines[-1]:  # stopped, or something else is wrong
                 sys.exit(f"stopped in, or failed: {clip}; see {o.out / 'people.log'}")
@@ -144,7 +145,8 @@ def score(o, people, name, verb, seed):
 def report(o):
     left_out = o.out / "left_out.txt"
     count = len(left_out.read_text(encoding="utf-8").splitlines()) if left_out.exists() else 0
-    lines = [f"Profile {o.profile}, windows of {o.window}², {o.steps} steps of batch {o.batch}, {o.people} people, {count} clips left out; mean ± "
+    lines = [f"Profile {o.profile}, windows of {o.window}², {o.steps} steps of batch {o.batch}, {o.people} people, "
+             f"{count} clips left out; mean ± "
              "standard deviation over seeds", "", "| photos | system | given | seeds | pictures | " +
              " | ".join(name for _, name, _ in SCORES) + " |", "|---|---|---|---|---|" + "---|" * len(SCORES)]
     rows = []
@@ -153,7 +155,8 @@ def report(o):
             for given in o.given:
                 found = [scores for seed in seeds_of(o, name)
                          if (path := run_folder(o, name, seed) / f"scores_{given}.json").exists()
-                         for scores in json.loads(path.read_text(encoding="utf-8"))["scores"] if scores["photos"] == photos]
+                         for scores in json.loads(path.read_text(encoding="utf-8"))["scores"]
+                         if scores["photos"] == photos]
                 if not found:
                     continue
                 values = {key: [v for s in found if (v := score_of(s, key)) is not None] for key, _, _ in SCORES}
@@ -205,7 +208,9 @@ def main():
     parser.add_argument("--actions", type=int, default=4)
     parser.add_argument("--frames", type=int, default=3)
     parser.add_argument("--size", type=int, default=256, help="of the people's pictures")
-    parser.add_argument("--window", type=int, help="pixels a side of what is compared; default: of the profile's networks, which can do no other")
+    parser.add_argument("--window", type=int, 
+                        help="pixels a side of what is compared; default: of the profile's networks, which can do no "
+                             "other")
     parser.add_argument("--people-options", default="", help="of synth-people, one text")
     parser.add_argument("--steps", type=int, default=4000)
     parser.add_argument("--batch", type=int, default=4)
@@ -220,7 +225,8 @@ def main():
     o = parser.parse_args()
     o.window = o.window or WINDOW[o.profile]
     if o.window != WINDOW[o.profile] and {"photo", "guided"} & set(o.systems):
-        parser.error(f"photo and guided of the profile {o.profile} make pictures of {WINDOW[o.profile]}²: leave --window or these out")
+        parser.error(f"photo and guided of the profile {o.profile} make pictures of {WINDOW[o.profile]}²: leave "
+                     f"--window or these out")
     o.out.mkdir(parents=True, exist_ok=True)
     if not o.report:
         people = make_people(o)

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clothes, hair and skin of real people as `bodyloom parse` tells them apart, beside frames that were labelled by hand.
 
-usage: parser.py --bodyloom build/release/apps/bodyloom --data FOLDER --out FOLDER [--weights body run/parser.npz …] [--show]
+usage: parser.py --bodyloom build/release/apps/bodyloom --data FOLDER --out FOLDER [--weights body run/parser.npz …]
+       [--show]
 
 The frames and their polygons are those of parser_frames.json beside this script, the videos lie in --data. Intersection
-over union by class, in the whole picture (the person's mask counts too) and inside the mask that both agree on, where only
-the classes count. --show writes frames tinted by their hand-drawn labels and stops. Needs the pose detector's networks,
-NumPy and ffmpeg.
+over union by class, in the whole picture (the person's mask counts too) and inside the mask that both agree on, where
+only the classes count. --show writes frames tinted by their hand-drawn labels and stops. Needs the pose detector's
+networks, NumPy and ffmpeg.
 """
 import argparse
 import json
@@ -20,7 +21,8 @@ import numpy as np
 from pixels import decoded, write
 
 NAMES = ["background", "top", "bottom", "face", "hair", "skin", "shoes"]
-COLOURS = np.array([[0, 0, 0], [230, 60, 60], [60, 90, 230], [250, 200, 160], [120, 80, 40], [255, 160, 90], [60, 200, 90]])
+COLOURS = np.array([[0, 0, 0], [230, 60, 60], [60, 90, 230], [250, 200, 160], [120, 80, 40], [255, 160, 90],
+                    [60, 200, 90]])
 
 
 def filled(polygon, width, height):
@@ -61,8 +63,8 @@ def main():
     frames = json.loads(pathlib.Path(__file__).with_name("parser_frames.json").read_text(encoding="utf-8"))["frames"]
     for frame in frames:
         picture = o.out / (frame["name"] + ".png")
-        subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", str(o.data / frame["video"]), "-vf", f"select=eq(n\\,{frame['frame']})",
-                        "-frames:v", "1", str(picture)], check=True)
+        subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", str(o.data / frame["video"]), "-vf",
+                        f"select=eq(n\\,{frame['frame']})", "-frames:v", "1", str(picture)], check=True)
         if o.show:
             tinted = (decoded(picture, frame["width"], frame["height"])[0].astype(int) + COLOURS[truth_of(frame)]) // 2
             write(o.out / (frame["name"] + "_labels.png"), tinted.astype(np.uint8))

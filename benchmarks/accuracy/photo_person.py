@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A real person from one frame of a video, compared with the other frames of it: `bodyloom animate person` with the poses
-that the video itself shows.
+"""A real person from one frame of a video, compared with the other frames of it: `bodyloom animate person` with the
+poses that the video itself shows.
 
 usage: photo_person.py --bodyloom build/release/apps/bodyloom --video CLIP --out FOLDER [--frames 0 60 120] [--photos 1]
 
@@ -46,8 +46,8 @@ def main():
     o.out.mkdir(parents=True, exist_ok=True)
     people = o.out / "people"
     if not (people / "person_0.npz").exists():
-        subprocess.run([o.bodyloom, "run", str(o.video), "--out", str(people), "--people", "1", "--masks", "--no-overlay",
-                        "--quiet"], check=True)
+        subprocess.run([o.bodyloom, "run", str(o.video), "--out", str(people), "--people", "1", "--masks",
+                        "--no-overlay", "--quiet"], check=True)
     mask = masks(people / "mask_0.npz")
     count, height, width = mask.shape
     truth = decoded(o.video, width, height)[:count]

@@ -22,8 +22,9 @@ def write(path, pixels, options=()):
 def write_numbered(folder, frames):
     """000000.png, 000001.png …: frames of (height, width, 3) bytes, all of one size."""
     height, width = frames[0].shape[:2]
-    subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-i", "-",
-                    "-start_number", "0", str(folder / "%06d.png")], input=b"".join(f.tobytes() for f in frames), check=True)
+    subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}",
+                    "-i", "-", "-start_number", "0", str(folder / "%06d.png")],
+                   input=b"".join(f.tobytes() for f in frames), check=True)
 
 
 def masks(path):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of the error in the room (room_g_mpjpe_mm of `bodyloom evaluate`) of AIST++'s clips tracked from one camera each, and
-how often the stated sigmas cover.
+"""Parts of the error in the room (room_g_mpjpe_mm of `bodyloom evaluate`) of AIST++'s clips tracked from one camera
+each, and how often the stated sigmas cover.
 
 usage: room_error_parts.py BODYLOOM AISTPP [--views c01 ...]
   BODYLOOM: the program, such as build/release/apps/bodyloom
@@ -10,12 +10,13 @@ usage: room_error_parts.py BODYLOOM AISTPP [--views c01 ...]
 Of the 17 COCO joints about the middle of the hips, all scaled to the true sum of limbs but for "own size", mm:
   tracked, own size      with the vertical that the track states, one yaw for the clip
   vertical               with the calibration's vertical, one yaw for the clip
-  pitch, rotation        in the calibrated camera, with the best rotation about the camera's x axis, or about any, for the clip
+  pitch, rotation        in the calibrated camera, with the best rotation about the camera's x axis, or about any, for
+                         the clip
   yaw / f, ...           the same with the best one of each frame
   along, across          the error in the calibrated camera along the ray to the hips, and perpendicular to it
-Then, degrees: the stated vertical's angle to the true one, its sigma (root mean square of that angle), its mean lean towards
-where the person faces; cm: height of standing ankles over the stated ground, less 8 cm, median, and its sigma. A vertical
-that errs by a Gaussian's two directions is within sigma in 63 % and within two in 98 %.
+Then, degrees: the stated vertical's angle to the true one, its sigma (root mean square of that angle), its mean lean
+towards where the person faces; cm: height of standing ankles over the stated ground, less 8 cm, median, and its sigma.
+A vertical that errs by a Gaussian's two directions is within sigma in 63 % and within two in 98 %.
 """
 import argparse
 import pathlib
@@ -28,7 +29,8 @@ from bone_lengths import LIMBS, spans
 from world_frame import ANKLE_M, camera_of, rotation_of, standing_ankles, true_joints, vertical_off_deg
 
 UP = np.array([0.0, 1, 0])
-PARTS = ("tracked", "own size", "vertical", "pitch", "rotation", "yaw / f", "pitch / f", "rotation / f", "along", "across")
+PARTS = ("tracked", "own size", "vertical", "pitch", "rotation", "yaw / f", "pitch / f", "rotation / f", "along",
+         "across")
 WORLD = ("tilt", "said", "lean", "ankles cm", "said cm")
 
 
@@ -87,7 +89,8 @@ def measure(track, camera, truth):
     ankles, stands = standing_ankles(track, truth, UP)
     height = np.nanmedian(ankles[stands][:, 1]) - ANKLE_M
     angle_sigma, height_sigma = track["world_sigma"]
-    return values + [vertical_off_deg(track, world_from_camera.T @ UP), angle_sigma, lean, 100 * height, 100 * height_sigma]
+    return values + [vertical_off_deg(track, world_from_camera.T @ UP), angle_sigma, lean, 100 * height,
+                     100 * height_sigma]
 
 
 def coverage(rows):
@@ -110,7 +113,8 @@ def main():
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--views", nargs="+", default=[f"c0{k}" for k in range(1, 10)])
     given = parser.parse_args()
-    settings = dict(row.split() for row in (given.data / "cameras" / "mapping.txt").read_text(encoding="utf-8").splitlines())
+    settings = dict(row.split()
+                    for row in (given.data / "cameras" / "mapping.txt").read_text(encoding="utf-8").splitlines())
     print(f"{'':32}" + "".join(f"{name:>13}" for name in PARTS + WORLD))
     every = []
     with tempfile.TemporaryDirectory() as folder:
@@ -118,8 +122,8 @@ def main():
         for clip in sorted((given.data / "keypoints2d").glob("*.pkl")):
             rows = []
             for view in given.views:
-                subprocess.run([given.bodyloom, "track", "--detections", clip, "--view", view, "--cameras", given.data / "cameras",
-                                "--out", file, "--quiet"], check=True)
+                subprocess.run([given.bodyloom, "track", "--detections", clip, "--view", view, "--cameras",
+                                given.data / "cameras", "--out", file, "--quiet"], check=True)
                 track = np.load(file)
                 camera = camera_of(given.data / "cameras" / f"{settings[clip.stem]}.json", view)
                 truth = true_joints(given.data / "keypoints3d" / clip.name, len(track["timestamps"]))

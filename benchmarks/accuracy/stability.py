@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Stability over a clip, as Fig. 11 of Yoon et al., "Pose-Guided Human Animation from a Single Image in the Wild" (CVPR
-2021): LPIPS of every frame of synthetic people in motion, a curve a renderer, and its standard deviation over the frames.
+2021): LPIPS of every frame of synthetic people in motion, a curve a renderer, and its standard deviation over the
+frames.
 
 usage: stability.py --bodyloom build/release/apps/bodyloom --motions ../shared/data/motion --out FOLDER
        [--photo RUN] [--guided RUN] [--people 5] [--frames 60] [--size 128] [--curve 0] [--picture curve.svg]
@@ -64,14 +65,15 @@ def main():
     people = o.out / "people"
     if not (people / "people.json").exists():
         call([o.bodyloom, "synth-people", "--motions", o.motions, "--out", str(people), "--people", str(o.people),
-              "--test-share", "0.4", "--actions", "1", "--views", "1", "--every", "1", "--frames", str(o.frames), "--size", "256",
-              "--seed", str(o.seed), "--threads", str(o.threads), "--quiet"], o.out / "log.txt")
+              "--test-share", "0.4", "--actions", "1", "--views", "1", "--every", "1", "--frames", str(o.frames),
+              "--size", "256", "--seed", str(o.seed), "--threads", str(o.threads), "--quiet"], o.out / "log.txt")
     untrained = ["person", "--size", str(o.size)]
     systems = {"photo": ["photo", "--run", o.photo], "guided": ["guided", "--run", o.guided], "person": untrained,
                "floor": untrained + ["--score-floor"]}
     curves = {name: scores_of(o, people, name, arguments) for name, arguments in systems.items()
               if None not in arguments}
-    print("| system | LPIPS | standard deviation over a clip's pictures | mean step from one to the next |\n|---|---|---|---|")
+    print("| system | LPIPS | standard deviation over a clip's pictures | mean step from one to the next "
+          "|\n|---|---|---|---|")
     for name, clips in curves.items():
         steps = [statistics.mean(abs(b - a) for a, b in zip(clip, clip[1:])) for clip in clips]
         print(f"| {name} | {text([statistics.mean(clip) for clip in clips], 4)} | "

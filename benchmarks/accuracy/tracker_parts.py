@@ -5,10 +5,10 @@
 usage: tracker_parts.py --bodyloom build/release/apps/bodyloom --data AISTPP [--views c01 …] [--repeat 3] [--threads 2]
   --data: a folder with keypoints2d/, keypoints3d/, motions/ and cameras/
 
-Rows take turns, so that a machine which slows down slows all of them. Seconds a clip are those of the solve and of whatever
-the row leaves in (the program's own clock, without starting it, reading and writing), frames a second those of the row's
-median repetition and of its fastest. Errors: means over clips and views; the world's vertical and the coverage of
-joint_sigma are what a row may lack without an error of its own.
+Rows take turns, so that a machine which slows down slows all of them. Seconds a clip are those of the solve and of
+whatever the row leaves in (the program's own clock, without starting it, reading and writing), frames a second those of
+the row's median repetition and of its fastest. Errors: means over clips and views; the world's vertical and the
+coverage of joint_sigma are what a row may lack without an error of its own.
 """
 import argparse
 import json
@@ -31,8 +31,8 @@ ROWS = (("everything", []),
         ("Ceres", ["--solver", "ceres"]),
         ("focal length unknown", ["--camera", "unknown-focal"]),
         ("weak perspective", ["--camera", "weak"]))
-ERRORS = ("pa_mpjpe_mm", "mpjpe_scaled_mm", "heldout_median_px", "accel_err_ms2", "sigma_within_2_percent", "room_g_mpjpe_mm", "room_wa_mpjpe_mm",
-          "tilt_deg", "ankle_height_err_mm", "knee_bias_deg")
+ERRORS = ("pa_mpjpe_mm", "mpjpe_scaled_mm", "heldout_median_px", "accel_err_ms2", "sigma_within_2_percent",
+          "room_g_mpjpe_mm", "room_wa_mpjpe_mm", "tilt_deg", "ankle_height_err_mm", "knee_bias_deg")
 
 
 def main():
@@ -54,16 +54,18 @@ def main():
                 taken, frames = 0, 0
                 for clip in clips:
                     for view in o.views:
-                        subprocess.run([o.bodyloom, "track", "--detections", clip, "--view", view, "--cameras", o.data / "cameras",
-                                        "--out", track, "--json", report, "--threads", str(o.threads), "--quiet", *options],
+                        subprocess.run([o.bodyloom, "track", "--detections", clip, "--view", view, "--cameras",
+                                        o.data / "cameras", "--out", track, "--json", report, "--threads",
+                                        str(o.threads), "--quiet", *options],
                                        check=True)
                         told = json.loads(report.read_text(encoding="utf-8"))
                         taken += told["seconds"]["total"] - told["seconds"]["read"] - told["seconds"]["write"]
                         frames += told["frames"]
                         if repetition:
                             continue
-                        subprocess.run([o.bodyloom, "evaluate", "--track", track, "--truth", o.data, "--sequence", clip.stem,
-                                        "--view", view, "--json", report], check=True, stdout=subprocess.DEVNULL)
+                        subprocess.run([o.bodyloom, "evaluate", "--track", track, "--truth", o.data, "--sequence",
+                                        clip.stem, "--view", view, "--json", report], check=True,
+                                       stdout=subprocess.DEVNULL)
                         values[name].append(json.loads(report.read_text(encoding="utf-8"))["values"])
                 seconds[name].append(taken)
             print(f"repetition {repetition + 1} of {o.repeat}", file=sys.stderr, flush=True)
@@ -76,8 +78,8 @@ def main():
         cells = "".join(f"{statistics.mean(e):24.2f}" if e else f"{'-':>24}" for e in errors)
         took = statistics.median(seconds[name])
         spread = (max(seconds[name]) - min(seconds[name])) / pairs
-        print(f"{name:22}{cells}{took / pairs:10.3f}{spread:10.3f}{frames / took:10.0f}{frames / min(seconds[name]):10.0f}"
-              f"{took / whole:10.2f}")
+        print(f"{name:22}{cells}{took / pairs:10.3f}{spread:10.3f}{frames / took:10.0f}"
+              f"{frames / min(seconds[name]):10.0f}{took / whole:10.2f}")
     return 0
 
 

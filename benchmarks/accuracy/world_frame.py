@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Error of a track's world frame against a calibration: angle of its vertical, height of standing ankles over its ground,
-and their sliding distance.
+"""Error of a track's world frame against a calibration: angle of its vertical, height of standing ankles over its
+ground, and their sliding distance.
 
 usage: world_frame.py TRACK.npz CAMERAS.json VIEW UP [KEYPOINTS3D.pkl]
        world_frame.py TRACK.npz VERTICES.npy
@@ -66,7 +66,8 @@ def vertical_off_deg(track, up_true):
 
 
 def standing_ankles(track, truth, up_axis):
-    """The ankles in the track's world, T x 2 x 3, and which of them stand: by the true joints, by their own motion without."""
+    """The ankles in the track's world, T x 2 x 3, and which of them stand: by the true joints, by their own motion
+    without."""
     M = track["world_from_camera"]
     ankles = track["joints"][:, [7, 8]] @ M[:3, :3].T + M[:3, 3]
     if truth is None:
@@ -77,7 +78,8 @@ def standing_ankles(track, truth, up_axis):
 def lowest_points():
     track = np.load(sys.argv[1])
     lowest = 1000 * np.nanpercentile(np.load(sys.argv[2], mmap_mode="r")[:, :, 1].min(axis=1), [5, 25, 50, 75, 95])
-    print(f"{sys.argv[1]}: {track['world_source']}; the body's lowest point over the ground, mm: median {lowest[2]:.0f}, half of the "
+    print(f"{sys.argv[1]}: {track['world_source']}; the body's lowest point over the ground, mm: median "
+          f"{lowest[2]:.0f}, half of the "
           f"frames {lowest[1]:.0f} to {lowest[3]:.0f}, 90 % {lowest[0]:.0f} to {lowest[4]:.0f}")
 
 

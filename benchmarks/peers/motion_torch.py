@@ -66,7 +66,8 @@ class Model(nn.Module):
         a, n = self.appearance(torch.cat([f, labels, past[1], past[2]], 1))
         foreground = 1 - labels[:, :1]
         a, n = a + self.texel_colour(texel), torch.tanh(n)
-        return logits, labels, foreground * torch.sigmoid(a), foreground * n / n.norm(dim=1, keepdim=True).clamp_min(1e-6)
+        return (logits, labels, foreground * torch.sigmoid(a),
+                foreground * n / n.norm(dim=1, keepdim=True).clamp_min(1e-6))
 
 
 def vgg(divisor):

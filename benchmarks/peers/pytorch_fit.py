@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Fits the problem of a .npz file (written by bodyloom_bench_work_precision) with PyTorch, as a user would: batched over
-frames, vectorised, only the vertices that keypoints touch are posed, gradients by autograd.
+"""Fits the problem of a .npz file (written by bodyloom_bench_work_precision) with PyTorch, as a user would: batched
+over frames, vectorised, only the vertices that keypoints touch are posed, gradients by autograd.
 
   pytorch_fit.py PROBLEM.npz OUT.npz --method adam|lbfgs --rate LR --iterations N [--threads 2] [--decay]
 
-OUT holds, for about twenty moments of the run, seconds (wall and processor time), poses (T*J*3 axis-angle), trans, betas:
-who fitted better is judged by the program that wrote the problem. Cost: keypoints (Geman-McClure), accelerations of rotations and translation, the
-nearest component of the pose prior, shape and stature prior; the same numbers as the C++ engines minimise.
+OUT holds, for about twenty moments of the run, seconds (wall and processor time), poses (T*J*3 axis-angle), trans,
+betas: who fitted better is judged by the program that wrote the problem. Cost: keypoints (Geman-McClure), accelerations
+of rotations and translation, the nearest component of the pose prior, shape and stature prior; the same numbers as the
+C++ engines minimise.
 """
 import argparse
 import time
@@ -16,7 +17,8 @@ import numpy as np
 import torch
 
 
-MOMENTS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1)
+MOMENTS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9,
+           0.95, 1)
 
 
 def exp_so3(w):
@@ -54,14 +56,16 @@ class Problem:
         self.v_template, self.shapedirs = real("v_template"), real("shapedirs")  # V x 3, V x 3 x B
         self.joint_template, self.joint_shapedirs = real("joint_template"), real("joint_shapedirs")  # J x 3, J x 3 x B
         self.influence_joint, self.influence_weight = get("influence_joint").long(), real("influence_weight")
-        self.corrective_joint, self.corrective = get("corrective_joint").long(), real("corrective")  # V x C, V x C x 3 x 9
+        # V x C, V x C x 3 x 9
+        self.corrective_joint, self.corrective = get("corrective_joint").long(), real("corrective")
         self.camera = data["camera"].tolist()  # fx, fy, cx, cy
         self.kernel = float(data["kernel"])
         self.factors = real("acceleration_factors")  # T-2 x 2
         self.joint_inverse_sigma, self.root_inverse_sigma = real("joint_inverse_sigma"), real("root_inverse_sigma")
         self.prior_weight = float(data["prior_weight"])
         self.prior_joints = get("prior_joints").long()
-        self.prior_means, self.prior_sqrt, self.prior_offset = real("prior_means"), real("prior_sqrt"), real("prior_offset")
+        self.prior_means, self.prior_sqrt, self.prior_offset = (
+            real("prior_means"), real("prior_sqrt"), real("prior_offset"))
         self.shape_rows, self.shape_offset = real("shape_rows"), real("shape_offset")
         self.poses, self.trans, self.betas = real("poses"), real("trans"), real("betas")  # the start
 
@@ -134,9 +138,11 @@ def main():
     cpu_spent, cpu_start = 0.0, time.process_time()
     if arguments.method == "adam":
         optimiser = torch.optim.Adam(unknowns, lr=arguments.rate)
-        schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, arguments.iterations) if arguments.decay else None
+        schedule = (torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, arguments.iterations)
+                    if arguments.decay else None)
     else:
-        optimiser = torch.optim.LBFGS(unknowns, lr=arguments.rate, max_iter=1, history_size=arguments.history, line_search_fn="strong_wolfe")
+        optimiser = torch.optim.LBFGS(unknowns, lr=arguments.rate, max_iter=1, history_size=arguments.history,
+                                      line_search_fn="strong_wolfe")
         schedule = None
 
     def closure():

@@ -4,8 +4,8 @@
 
 usage: draw_plots.py [--images docs/images] F.json [G.json …]
 
-Writes IMAGES/<file>.svg for every plot and prints its path. Points that are not finite, or not positive on a logarithmic
-axis, are left out. The same JSON gives the same bytes with one version of matplotlib.
+Writes IMAGES/<file>.svg for every plot and prints its path. Points that are not finite, or not positive on a
+logarithmic axis, are left out. The same JSON gives the same bytes with one version of matplotlib.
 """
 import argparse
 import json

@@ -25,8 +25,8 @@ import numpy as np
 def run(command, engine, threads, options, folder):
     out, report = folder / f"{engine}.npz", folder / f"{engine}.json"
     begin = time.perf_counter()
-    subprocess.run([command, "track", "--quiet", "--solver", engine, "--threads", str(threads), "--out", out, "--json", report,
-                    *options], check=True)
+    subprocess.run([command, "track", "--quiet", "--solver", engine, "--threads", str(threads), "--out", out, "--json",
+                    report, *options], check=True)
     return time.perf_counter() - begin, json.loads(report.read_text(encoding="utf-8")), np.load(out)["joints"]
 
 
@@ -54,9 +54,11 @@ def main():
         ratios = [a / b for a, b in zip(seconds[engine], seconds[first])]
         apart = 1e3 * np.linalg.norm(joints - last[first][1], axis=-1).ravel()
         apart = apart[np.isfinite(apart)]
-        print(f"| {engine} | {statistics.median(seconds[engine]):.2f} ({min(seconds[engine]):.2f} to {max(seconds[engine]):.2f}) | "
+        print(f"| {engine} | {statistics.median(seconds[engine]):.2f} ({min(seconds[engine]):.2f} to "
+              f"{max(seconds[engine]):.2f}) | "
               f"{statistics.median(ratios):.2f} | {report['iterations']} | {report['final_cost']:.2f} | "
-              f"{report['peak_memory_bytes'] / 2**20:.0f} | {np.median(apart):.3f} / {np.percentile(apart, 99):.2f} / {apart.max():.1f} |")
+              f"{report['peak_memory_bytes'] / 2**20:.0f} | {np.median(apart):.3f} / {np.percentile(apart, 99):.2f} / "
+              f"{apart.max():.1f} |")
 
 
 if __name__ == "__main__":

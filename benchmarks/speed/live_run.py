@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs `bodyloom live` on a video that is repeated to a given length, at its own pace, with clients at its page, and prints what
-it costs: memory by the minute, states that each client received, and the command's own summary (docs/lab/live.md).
+"""Runs `bodyloom live` on a video that is repeated to a given length, at its own pace, with clients at its page, and
+prints what it costs: memory by the minute, states that each client received, and the command's own summary
+(docs/lab/live.md).
 
 usage: live_run.py COMMAND VIDEO [--minutes 10] [--clients 2] [-- options of bodyloom live]
 Needs ffmpeg. Linux: memory is read from /proc.
@@ -38,8 +39,8 @@ class Client(threading.Thread):
 def repeated(video, minutes, folder):
     """The video over and over, so many minutes of it."""
     target = folder / "long.mp4"
-    subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-stream_loop", "-1", "-i", video, "-t", str(60 * minutes), "-an", "-c", "copy",
-                    str(target)], check=True)
+    subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-stream_loop", "-1", "-i", video, "-t", str(60 * minutes),
+                    "-an", "-c", "copy", str(target)], check=True)
     return target
 
 
@@ -53,8 +54,8 @@ def main():
     wishes = parser.parse_args(own.split())
     with tempfile.TemporaryDirectory() as name:
         video = repeated(wishes.video, wishes.minutes, pathlib.Path(name))
-        run = subprocess.Popen([wishes.command, "live", str(video), "--listen", "127.0.0.1:0", *others.split()], stderr=subprocess.PIPE,
-                               text=True)
+        run = subprocess.Popen([wishes.command, "live", str(video), "--listen", "127.0.0.1:0", *others.split()],
+                               stderr=subprocess.PIPE, text=True)
         first = run.stderr.readline()
         found = re.fullmatch(r"page +(\S+)\n", first)
         if not found:

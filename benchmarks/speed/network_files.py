@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes ONNX networks with random weights and the layers of well-known ones, to time runtimes on (docs/lab/run_speed.md):
-yolo.onnx as YOLOv8n-pose, depthwise.onnx as MobileNetV2 without its head, both for 640x640 pixels.
+"""Writes ONNX networks with random weights and the layers of well-known ones, to time runtimes on
+(docs/lab/run_speed.md): yolo.onnx as YOLOv8n-pose, depthwise.onnx as MobileNetV2 without its head, both for 640x640
+pixels.
 
 usage: network_files.py FOLDER
 Needs numpy and Debian's python3-onnx.
@@ -36,8 +37,8 @@ class Network:
     def conv(self, x, out, size=3, stride=1, groups=1, activation="swish"):
         fan_in = self.channels[x] // groups * size * size
         weights = self.random.standard_normal((out, self.channels[x] // groups, size, size)) * np.sqrt(2 / fan_in)
-        y = self.add("Conv", [x, self.constant(weights.astype(np.float32)), self.constant(np.zeros(out, np.float32))], out,
-                     kernel_shape=[size, size], strides=[stride, stride], pads=[size // 2] * 4, group=groups)
+        y = self.add("Conv", [x, self.constant(weights.astype(np.float32)), self.constant(np.zeros(out, np.float32))],
+                     out, kernel_shape=[size, size], strides=[stride, stride], pads=[size // 2] * 4, group=groups)
         if activation == "swish":
             return self.add("Mul", [y, self.add("Sigmoid", [y], out)], out)
         if activation == "relu6":

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Cost of a call from Python compared with the command: docs/python.md, "Figures".
+"""Cost of a call from Python compared with the command: docs/lab/run_speed.md, "Calls from Python".
 
 usage: PYTHONPATH=BUILD/python python_calls.py COMMAND AISTPP [--runs 5] [--frames 600]
   COMMAND: the program `bodyloom`; AISTPP: a folder with keypoints2d/ and cameras/
 
 Three tables, medians and ranges of --runs rounds, everything on one thread:
-- a recording tracked from its files and written, by track() and .save() and by `bodyloom track` in turn; whether the bytes agree;
-- LiveTracker.push, frame by frame, with and without the standard deviations of joints: frames a second by the clock and of
-  processor time, and the slowest push in a hundred;
+- a recording tracked from its files and written, by track() and .save() and by `bodyloom track` in turn; whether the
+  bytes agree;
+- LiveTracker.push, frame by frame, with and without the standard deviations of joints: frames a second by the clock and
+  of processor time, and the slowest push in a hundred;
 - `import bodyloom` in a new interpreter, beside NumPy alone.
 """
 import argparse
@@ -31,7 +32,8 @@ def seconds_of(job):
 
 
 def row(name, values, unit, digits=2):
-    print(f"  {name:44} {statistics.median(values):9.{digits}f} {unit:10} ({min(values):.{digits}f} to {max(values):.{digits}f})")
+    print(f"  {name:44} {statistics.median(values):9.{digits}f} {unit:10} ({min(values):.{digits}f} to "
+          f"{max(values):.{digits}f})")
 
 
 def clip_calls(command, data, runs, folder):
@@ -41,12 +43,13 @@ def clip_calls(command, data, runs, folder):
         bodyloom.track(recording, view="c01", camera=data / "cameras", threads=1).save(folder / "call.npz")
 
     def program():
-        subprocess.run([command, "track", "--detections", recording, "--view", "c01", "--cameras", data / "cameras", "--threads", "1",
-                        "--quiet", "--out", folder / "command.npz"], check=True)
+        subprocess.run([command, "track", "--detections", recording, "--view", "c01", "--cameras", data / "cameras",
+                        "--threads", "1", "--quiet", "--out", folder / "command.npz"], check=True)
 
     rounds = [(seconds_of(call), seconds_of(program)) for _ in range(runs)]
     same = (folder / "call.npz").read_bytes() == (folder / "command.npz").read_bytes()
-    print(f"{recording.stem}, {len(bodyloom.Track.load(folder / 'call.npz').timestamps)} frames; {'the same' if same else 'OTHER'} bytes")
+    print(f"{recording.stem}, {len(bodyloom.Track.load(folder / 'call.npz').timestamps)} frames; "
+          f"{'the same' if same else 'OTHER'} bytes")
     row("track() and .save()", [a for a, _ in rounds], "s")
     row("bodyloom track, its start included", [b for _, b in rounds], "s")
     row("command / call, of a round", [b / a for a, b in rounds], "")
@@ -58,7 +61,8 @@ def live_pushes(frames, runs):
     for uncertainty in (True, False):
         clock, processor, slow = [], [], []
         for _ in range(runs):
-            tracker = bodyloom.LiveTracker(keypoints.names, image_size=keypoints.image_size, lag=4, threads=1, uncertainty=uncertainty)
+            tracker = bodyloom.LiveTracker(keypoints.names, image_size=keypoints.image_size, lag=4, threads=1,
+                                           uncertainty=uncertainty)
             pushes, begun = np.empty(frames), time.process_time()
             for t in range(frames):
                 pushes[t] = seconds_of(lambda t=t: tracker.push(keypoints.timestamps[t], keypoints.points[t]))
@@ -74,7 +78,8 @@ def live_pushes(frames, runs):
 def imports(runs):
     print("start of an interpreter")
     for name, statement in (("import numpy", "import numpy"), ("import bodyloom", "import bodyloom")):
-        row(name, [seconds_of(lambda: subprocess.run([sys.executable, "-c", statement], check=True)) for _ in range(runs)], "s")
+        row(name, [seconds_of(lambda: subprocess.run([sys.executable, "-c", statement], check=True))
+                   for _ in range(runs)], "s")
 
 
 def main():

@@ -9,7 +9,7 @@
 ///   inside the part        the chart's bounding box fills [.02,.98]²; of a two-island part the first (back of the
 ///   hand, top of the foot) fills u in [.02,.48], the second [.52,.98] on the left side; the right side is u → 1 − u
 /// v up: towards the head (torso, legs, head), the shoulder (arms), the finger and toe tips (hands, feet).
-/// Why "inner" and "outer" arms: docs/built_in_body.md, "Charts against real labels".
+/// Why "inner" and "outer" arms: docs/lab/built_in_body.md, "Charts against a detector's labels".
 #pragma once
 
 #include <array>

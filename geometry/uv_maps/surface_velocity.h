@@ -8,7 +8,7 @@
 ///   v̇ = Σ_j w_j ( Ġ_j v_rest + ṫ_j ) + Σ_j w_j G_j ( posedirs · vec Ṙ ),    Ġ_j = Ġ_p R_j + G_p R_j [ω_j]×,
 /// two more passes of the skinning loop (geometry/body/skinning_simd.h) instead of a Jacobian of 3V×3J. The rates come
 /// from the same stencils on the group: ω_j = Σ_k w_k log(R_j(t)ᵀ R_j(t_k)). It does not amplify noise of the vertices;
-/// cost and accuracy compared with differences: docs/descriptors.md.
+/// cost and accuracy compared with differences: docs/lab/descriptors.md.
 ///
 /// Frames. A velocity is that of the coordinates in one frame:
 ///   camera   d x_camera/dt, the camera's own motion included

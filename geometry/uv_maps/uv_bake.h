@@ -3,7 +3,7 @@
 /// Planar maps (one H×W plane a channel, float). Texels that show no surface are not written, so planes zeroed once can
 /// be reused for any number of frames.
 ///
-/// Only texels that show the surface are touched; cost: docs/descriptors.md. Bitwise reproducible, except that
+/// Only texels that show the surface are touched; cost: docs/lab/descriptors.md. Bitwise reproducible, except that
 /// instruction sets differ in the last bits.
 #pragma once
 

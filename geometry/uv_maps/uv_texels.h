@@ -8,7 +8,7 @@
 /// Gutter: so that a bilinear lookup next to a seam is right, the texels around a chart continue its surface. Such a
 /// texel shows the face ACROSS the seam: the surface is unrolled over the edge in the template's metric and followed as
 /// far as the texel lies from it. At a mesh boundary, the boundary's value is extended. Comparison with no gutter and
-/// with nearest dilation: docs/descriptors.md.
+/// with nearest dilation: docs/lab/descriptors.md.
 ///
 /// Irregularities of a UV map are counted: parts outside [0,1]² are not shown (no wrapping); faces without area in UV
 /// show nothing; overlaps go to the lowest face; a texel in the gutter of two charts goes to the nearer one, and

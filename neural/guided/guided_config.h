@@ -19,7 +19,7 @@ enum class MapCompletion {
 const char* ToText(MapCompletion completion);
 
 /// The paper gives image and texture sizes but neither channels nor levels; these are this project's choice
-/// (docs/guided_renderer.md).
+/// (docs/lab/pose_guided_renderer.md).
 struct GuidedProfile {
   std::string name;
   int image_size = 0;               ///< side of the window, pixels

@@ -8,7 +8,7 @@
 namespace bodyloom {
 
 /// The paper gives blocks and resolutions but no channels or levels; these are this project's choice
-/// (docs/motion_renderer.md).
+/// (docs/lab/motion_renderer.md).
 struct MotionProfile {
   std::string name;
   int image_size = 0;                          ///< longer side of the rendered window, pixels
@@ -48,7 +48,7 @@ struct MotionConfig {
   bool shape = true, normals = true, motion = true;
   /// The decoders also see the rendered UV coordinates, beside the projected descriptor. The paper's do not: they must
   /// infer the visible part of the body from normals and velocities alone, which is learned slowly
-  /// (docs/motion_renderer.md).
+  /// (docs/lab/motion_renderer.md).
   bool surface = true;
   /// The decoders also see a learned texture: motion-independent values per texel, trained with the networks. Not in
   /// the paper, whose networks must store patterns of clothes in their weights; source: Thies, Zollhöfer, Nießner,

@@ -9,7 +9,7 @@
 /// al., "High-Fidelity Neural Human Motion Transfer from Monocular Video", CVPR 2021: own detached predictions,
 /// replaced by truth every 500 frames), with shorter roll-outs because clips here are shorter. Several roll-outs per
 /// place are this project's addition: neighbouring frames are nearly identical, and consecutive steps on a single
-/// roll-out would average over few images (docs/motion_renderer.md). The first roll-outs have staggered lengths, so
+/// roll-out would average over few images (docs/lab/motion_renderer.md). The first roll-outs have staggered lengths, so
 /// that restarts do not coincide.
 ///
 /// Depends on the seed alone, so that a run can resume from any step.

@@ -4,10 +4,10 @@
 ///   L = L_a + 10 L_s + L_n + L_p + 0.01 L_g            (Yoon et al., CVPR 2022, eq. 9 and below)
 /// L_a, L_n: mean absolute differences of image and normals; L_s: cross entropy of the classes, or the mean absolute
 /// difference of probabilities (the paper does not specify the norm; with absolute differences small classes are never
-/// learned, docs/motion_renderer.md); L_p: of VGG-16's features after conv 1-2, 2-2, 3-2 and 4-2; L_g: the loss of a
-/// patch discriminator on the image, conditioned on the true classes. L_a, L_p and L_g use the colour masked by the
-/// true foreground (not in the paper: docs/motion_renderer.md). Losses without truth in the clip are disabled (listed
-/// in `losses_off`). Recurrence: neural/motion/rollout_plan.h.
+/// learned, docs/lab/motion_renderer.md); L_p: of VGG-16's features after conv 1-2, 2-2, 3-2 and 4-2; L_g: the loss of
+/// a patch discriminator on the image, conditioned on the true classes. L_a, L_p and L_g use the colour masked by the
+/// true foreground (not in the paper: docs/lab/motion_renderer.md). Losses without truth in the clip are disabled
+/// (listed in `losses_off`). Recurrence: neural/motion/rollout_plan.h.
 ///
 /// Writes into run_dir: checkpoint.bin and metrics.csv. A run resumed from a checkpoint ends with the same bytes as an
 /// uninterrupted one (same binary, machine and threads).

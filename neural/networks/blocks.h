@@ -65,7 +65,7 @@ TORCH_MODULE(DeconvBlock);
 // different rows of the kernel, so each of the four parities of (row, column) is an ordinary convolution with its part
 // of the kernel, and the result is the four interleaved. The sums and multiply–adds are the same, but LibTorch 1.13 has
 // no fast transposed convolution for the CPU and uses general matrix products of the installed BLAS. This way both
-// passes are 1.7 to 4.4 times faster (docs/networks.md).
+// passes are about twice as fast (forward: docs/lab/motion_renderer.md, "Speed").
 
 /// Equivalent to torch::conv_transpose2d with stride 2 for B×ic×H×W: weight is ic×oc×k×k, bias oc or undefined. Kernel
 /// 4 with padding 1, or kernel 3 with padding 1 and output padding 1, so that the result is B×oc×2H×2W; throws

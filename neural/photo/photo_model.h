@@ -11,7 +11,7 @@
 ///                                and the body's silhouette
 /// Source: Sarkar et al., "Neural Re-Rendering of Humans from a Single Image", ECCV 2020, Sections 3.2–3.4. The paper's
 /// RenderNet has three outputs on its photographs' plain background; the fourth is this project's
-/// (docs/photo_renderer.md).
+/// (docs/lab/one_photo_renderer.md).
 ///
 /// FeatureNet's last convolution is initialised as N(0, 0.02²) plus an identity that copies the input's colours to the
 /// first three features, so that visible texels need not be learned.

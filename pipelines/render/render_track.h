@@ -55,7 +55,8 @@ RenderTrackReport RenderTrack(const RenderTrackRequest& request, const BodyModel
 
 /// Several lines of text ending in a newline.
 std::string ToText(const RenderTrackReport& report);
-/// The same as one JSON object (docs/command.md).
+/// The same as one JSON object: what, outputs, frames ([first, past the last]), pictures, frames_without_body,
+/// pictures_without_video, video_frames_left, image_size, legend, seconds (draw, total).
 std::string ToJson(const RenderTrackReport& report);
 
 }  // namespace bodyloom

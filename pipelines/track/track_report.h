@@ -51,6 +51,9 @@ StageSeconds StagesOf(const TrackReport& report);
 std::string ToText(const TrackReport& report);
 
 /// The same as one JSON object; the keys are listed in docs/command.md. Numbers that are not finite become null.
+/// `initialiser` has system, person, people, frames, has_shape, gives_landmarks; over compared_frames the median and
+/// 95th percentile (_median_, _p95_) of joint_…_mm (pelvis aligned), root_…_mm, rotation_…_deg, root_…_deg; over
+/// `landmarks` 2D joints those of initialiser_…_px and fit_…_px.
 std::string ToJson(const TrackReport& report);
 
 /// The plan as lines "run   what: why" / "skip  what: why".

@@ -41,7 +41,14 @@ std::vector<RigCamera> RigOf(const std::vector<ViewReport>& views);
 
 /// One line for each view.
 std::string ToText(const std::vector<ViewReport>& views);
-/// Keys are listed in docs/command.md.
+/// An object:
+///   name, detections, used, fps, video (of people who were detected in it)
+///   left_out   the reason, if the view was not used; the keys below are then missing
+///   doubt      the reason to doubt that the view shows the first one's motion, if there is one
+///   repeat_s   how much later its clock may be, where the motion repeats itself
+///   frames (in common with the first), rotation_deg, distance_m (from the first), focal_px, offset_s, offset_frames,
+///   rate (clock), reprojection_median_px
+///   rotation_sigma_deg, translation_sigma_m, focal_log_sigma, offset_sigma_s, rate_sigma   0: given, null: not known
 nlohmann::ordered_json ToJson(const ViewReport& view);
 
 }  // namespace bodyloom

@@ -14,8 +14,7 @@
 ///   still has a vertex outside the lens' field of view is not drawn.
 /// - Only the box that holds the projected mesh is allocated, cleared and visited.
 ///
-/// Same input, same bytes: for any number of threads and any instruction set. How it works, what it costs:
-/// docs/rendering.md.
+/// Same input, same bytes: for any number of threads and any instruction set. Cost: docs/lab/raster.md.
 #pragma once
 
 #include <cstdint>

@@ -107,7 +107,7 @@ class Packages(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         rate = int(re.search(r"200 frames at (\d+) frames a second", done.stdout)[1])
         error_mm = int(re.search(r"joints (\d+) mm from the truth", done.stdout)[1])
-        self.assertGreater(rate, 2)  # measured figures: docs/python.md; here the machine may be busy
+        self.assertGreater(rate, 2)  # measured figures: docs/lab/run_speed.md; here the machine may be busy
         self.assertLess(error_mm, 150)
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Support of the stability suite: the engines it runs on, clips with known truth, and invariants of every result. The
-/// cases and their guarantees: docs/stability.md.
+/// cases and their guarantees: docs/lab/stability.md.
 #pragma once
 
 #include <gtest/gtest.h>

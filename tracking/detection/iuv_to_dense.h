@@ -25,7 +25,7 @@ namespace bodyloom {
 /// units, so this is an estimate between two bounds. Below: 8 bits rounded down alone give 1/(255 √12) = 0.0011. Above:
 /// annotators of rendered bodies err by 2 cm on small parts to 7 cm on the torso (Güler et al., DensePose, CVPR 2018,
 /// section 2.1), a tenth of those charts and more, much of it shared by neighbouring pixels. 0.03 of a torso's chart
-/// that is 100 px high in the image is 3 px, the sigma_px below. Effect of a wrong value: docs/tracking.md.
+/// that is 100 px high in the image is 3 px, the sigma_px below. Effect of a wrong value: docs/lab/dense_keypoints.md.
 constexpr double kDensePoseUvSigma = 0.03;
 
 /// Standard deviation of an image position that is known to a pixel, in pixels: 1/√12.

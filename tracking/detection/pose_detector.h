@@ -16,7 +16,7 @@
 
 namespace bodyloom {
 
-/// The landmark network's size. Errors and times: docs/detection.md.
+/// The landmark network's size. Errors and times: docs/lab/pose_detector.md.
 enum class PoseNetworkSize { kLite, kFull, kHeavy };
 
 /// "lite", "full" or "heavy".

@@ -8,8 +8,8 @@
 /// 3. Limbs: every limb has four hypotheses (each of its two bones points towards the camera or away: the sphere around
 ///    the known end meets the viewing ray twice); a trellis over the clip selects them by the learned density of limb
 ///    directions, by occlusion behind the torso as implied by low confidence, and by continuity.
-/// Source: Lee & Chen 1985 for the binary tree of hypotheses; the cues and their statistics are described in
-/// docs/tracking.md.
+/// Source: Lee & Chen 1985 for the binary tree of hypotheses; the cues are weighed by JointHypothesesOptions
+/// (tracking/problem/track_options.h).
 #pragma once
 
 #include <Eigen/Core>

@@ -130,8 +130,8 @@ struct PartLabelOptions {
 
   /// For clips whose 2D joints were derived from the labels: these joints only give a start, and the labels are the
   /// only observations besides the priors. Weights 10 and 30, found on the first half of the real clip of
-  /// docs/benchmarks.md (1, 3, 10, 30, 100 tried) and confirmed on its second half. With a detector's joints they are
-  /// too large: shoulders and hips follow the clothes.
+  /// docs/lab/part_labels.md (1, 3, 10, 30, 100 tried) and confirmed on its second half. With a detector's joints they
+  /// are too large: shoulders and hips follow the clothes.
   static PartLabelOptions LabelsAlone() {
     PartLabelOptions options;
     options.silhouette_weight = 10;
@@ -148,7 +148,7 @@ struct PartLabelOptions {
 struct RenderedUvOptions {
   double weight = 1;  ///< λ_r; 0: off
   /// Runs only when the keypoints' noise is known to be on the surface (DenseSequence::uv_sigma). For noise of the
-  /// pixels, reprojection is the better residual (docs/benchmarks.md).
+  /// pixels, reprojection is the better residual (docs/lab/dense_keypoints.md).
   bool only_with_uv_noise = true;
   int max_points = 1000;    ///< keypoints of a frame with residuals in UV, spread evenly over the parts
   int rounds = 1;           ///< solves on the coarse frames; whitening is refreshed before each
@@ -187,8 +187,8 @@ struct TrackSequenceOptions {
   int max_fine_iterations = 8;      ///< of chain's stage on all frames, when a coarse one came before
   double initialiser_weight = 0.1;  ///< λ_d of paper A, per frame
   /// λ_d when the lifter is the initialiser (0: it is not used), and a floor of its own uncertainty in metres. Found
-  /// on cameras c02, c04, c06 and c09 of the clips of docs/benchmarks.md, whose other cameras are reported there:
-  /// weights 0.03 to 0.4 differ by 2 mm.
+  /// on cameras c02, c04, c06 and c09 of the clips of docs/lab/tracking_aist.md, whose other cameras are reported
+  /// there: weights 0.03 to 0.4 differ by 2 mm.
   double lifter_weight = 0.12, lifter_min_sigma_m = 0.08;
   double prior_weight = 0.2;    ///< of the pose prior's energy, per frame
   double start_pull = 1.0;      ///< pull towards the hypotheses in the first stage (rotation σ 0.2 rad)
