@@ -88,7 +88,7 @@ std::function<ClipSettings()> AddClipOptions(CLI::App& verb) {
       ->group(kAllClips)
       ->check(CLI::Range(0.0, 1.0));
   verb.add_option("--view", track.view, "camera of files that hold several")->group(kAllClips)->type_name("NAME");
-  AddDetectionOptions(verb, &track, "Detection in raw videos");
+  AddDetectionOptions(verb, &track, "as of run and track", "Detection in raw videos");
   AddCalibrationOptions(verb, &track);
   AddLearnedOptions(verb, &track);
   AddSolveOptions(verb, &track);

@@ -79,7 +79,8 @@ void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* d
       ->needs(pose_model);
 }
 
-void AddHandsOption(CLI::App& app, HandsAndFaceChoice* choice, const std::string& group) {
+void AddHandsOption(CLI::App& app, std::optional<HandsAndFaceChoice>* choice, const std::string& unless_given,
+                    const std::string& group) {
   std::map<std::string, HandsAndFaceChoice> choices;
   for (const auto each : {HandsAndFaceChoice::kOff, HandsAndFaceChoice::kAuto, HandsAndFaceChoice::kOn}) {
     choices[ToText(each)] = each;
@@ -87,7 +88,7 @@ void AddHandsOption(CLI::App& app, HandsAndFaceChoice* choice, const std::string
   app.add_option("--hands", *choice,
                  "the 21 points of each hand and 68 of the face: auto where they are large enough, on however small, "
                  "off (default: " +
-                     ToText(*choice) + ")")
+                     unless_given + ")")
       ->transform(CLI::CheckedTransformer(choices, CLI::ignore_case).description(""))
       ->group(group)
       ->type_name("");

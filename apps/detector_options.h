@@ -20,7 +20,8 @@ void AddPlaybackOptions(CLI::App& app, std::optional<int>* turn_deg, double* cap
 /// and --box-model, in this group of the help.
 void AddDetectorOptions(CLI::App& app, FrameDetectorOptions* detector, double* detect_rate, const std::string& group);
 
-/// Adds --hands, in this group of the help; without it the choice stays as it is.
-void AddHandsOption(CLI::App& app, HandsAndFaceChoice* choice, const std::string& group);
+/// Adds --hands, in this group of the help; without it the choice stays as it is, which the help calls `unless_given`.
+void AddHandsOption(CLI::App& app, std::optional<HandsAndFaceChoice>* choice, const std::string& unless_given,
+                    const std::string& group);
 
 }  // namespace bodyloom

@@ -29,7 +29,7 @@ void AddOtherRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
       "--coarse-masks", request->coarse_masks,
       "masks as the network gives them: do not cut them from what stands behind people when the camera is still");
   app.add_flag("--side-view", request->side_view, "the overlay also shows everybody from their side");
-  AddDetectionOptions(app, &track, "Detection");
+  AddDetectionOptions(app, &track, "auto, if --body has fingers or is not given", "Detection");
   AddCalibrationOptions(app, &track);
   AddLearnedOptions(app, &track);
   AddSolveOptions(app, &track);

@@ -42,10 +42,10 @@ void AddImageSize(CLI::App& app, TrackRequest* request) {
 
 }  // namespace
 
-void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& detect) {
+void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& hands, const std::string& detect) {
   TrackSettings& c = *request;
   AddDetectorOptions(app, &c.detector, &c.detect_rate, detect);
-  AddHandsOption(app, &c.detector.hands_and_faces, detect);
+  AddHandsOption(app, &c.detector.hands_and_faces, hands, detect);
   AddPlaybackOptions(app, &c.turn_deg, &c.captured_fps, detect);
   app.add_flag_callback(
          "--no-mask", [&c] { c.use_mask = false; }, "do not use the person's mask")
@@ -224,7 +224,8 @@ void AddOtherTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
       ->check(CLI::IsMember({"body25", "body25b", "openpose_coco18", "coco17", "coco_wholebody23", "halpe26",
                              "mediapipe33", "human36m17"}));
 
-  AddDetectionOptions(app, request, "Detection (without the above, people are detected in --video)");
+  AddDetectionOptions(app, request, "auto with a body that has fingers, else off",
+                      "Detection (without the above, people are detected in --video)");
   AddCalibrationOptions(app, request);
   app.add_option("--camera", c.camera,
                  "pinhole: intrinsics from --cameras or --focal; unknown-focal: the focal length is estimated; weak: "

@@ -13,8 +13,9 @@ class App;
 
 namespace bodyloom {
 
-/// Adds those of AddDetectorOptions() and AddPlaybackOptions(), --no-mask, --from and --to, in this group of the help.
-void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& group);
+/// Adds those of AddDetectorOptions() and AddPlaybackOptions(), --hands, --no-mask, --from and --to, in this group of
+/// the help. `hands`: the default that the help names.
+void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& hands, const std::string& group);
 /// Adds --cameras and --focal.
 void AddCalibrationOptions(CLI::App& app, TrackSettings* request);
 /// Adds --body, --stature, --prior and --lifter.

@@ -79,7 +79,7 @@ void AddDetectVerb(CLI::App& app, Action* action, std::vector<std::string> argum
       ->check(CLI::NonNegativeNumber);
   AddDetectorOptions(*verb, &detect.detector, &detect.detect_rate, "Options");
   detect.detector.hands_and_faces = HandsAndFaceChoice::kAuto;
-  AddHandsOption(*verb, &detect.detector.hands_and_faces, "Options");
+  AddHandsOption(*verb, &detect.detector.hands_and_faces, ToText(HandsAndFaceChoice::kAuto), "Options");
   AddPlaybackOptions(*verb, &parsed->turn_deg, &detect.span.captured_fps, "Options");
   verb->add_option("--from", detect.span.from_s, "begin at this second")
       ->capture_default_str()

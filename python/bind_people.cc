@@ -44,8 +44,9 @@ out             folder that gets what the command writes: detections.npz, person
 people, person  at most so many (0: everybody); only this one; min_seconds: whoever is seen for less is left out
 detector        size of BlazePose's network: "lite", "full" or "heavy"; pose_model, box_model: networks of your own;
                 models: folder of BlazePose's (`./dev models`); detect_rate: detect so many frames a second only while
-                everybody moves slowly; mask: use people's masks; hands: "auto", "on" or "off": their points and those of
-                faces are kept in detections.npz and drawn in the overlay; tracks do not use them
+                everybody moves slowly; mask: use people's masks; hands: "auto" finds hands and
+                faces where they are large enough, "on" however small, "off" none: tracks of the built-in body have
+                fingers then, if somebody shows a hand; None: "auto", but "off" with a body without fingers
 rotate          turn the video clockwise by 90, 180 or 270 degrees, or "auto", so that people are upright;
                 captured_fps: slow motion, frames a second at which it was filmed
 camera, body    objects or files
@@ -138,8 +139,8 @@ void BindPeople(py::module_& module) {
          const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
          const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
          std::optional<double> end_s, const TurnArgument& rotate, std::optional<double> captured_fps,
-         const std::string& hands, const std::string& solver, int threads, bool uncertainty, bool ground, bool overlay,
-         bool side_view, bool masks, bool coarse_masks, bool report, const py::object& progress) {
+         const std::optional<std::string>& hands, const std::string& solver, int threads, bool uncertainty, bool ground,
+         bool overlay, bool side_view, bool masks, bool coarse_masks, bool report, const py::object& progress) {
         BODYLOOM_CHECK(people >= 0 && person.value_or(0) >= 0 && min_seconds >= 0,
                        "people, person, min_seconds: expected 0 or more");
         BODYLOOM_CHECK(out || !(side_view || masks || report),
@@ -161,7 +162,7 @@ void BindPeople(py::module_& module) {
         track.stature_m = PositiveOr0(stature_m, "stature_m");
         track.prior = TextOf(prior), track.lifter = TextOf(lifter);
         track.detector = DetectorFrom(detector, pose_model, box_model, models);
-        track.detector.hands_and_faces = HandsAndFaceChoiceNamed(hands);
+        if (hands) track.detector.hands_and_faces = HandsAndFaceChoiceNamed(*hands);
         track.detect_rate = PositiveOr0(detect_rate, "detect_rate");
         track.use_mask = mask;
         track.from_s = begin_s, track.to_s = end_s.value_or(-1);
@@ -191,10 +192,10 @@ void BindPeople(py::module_& module) {
       py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(), py::arg("models") = py::none(),
       py::arg("detect_rate") = py::none(), py::arg("mask") = true, py::arg("begin_s") = 0.0,
       py::arg("end_s") = py::none(), py::arg("rotate") = 0, py::arg("captured_fps") = py::none(),
-      py::arg("hands") = "off", py::arg("solver") = ToString(TrackSequenceOptions().solver), py::arg("threads") = 0,
-      py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true, py::arg("side_view") = false,
-      py::arg("masks") = false, py::arg("coarse_masks") = false, py::arg("report") = false,
-      py::arg("progress") = py::none(), kRunDoc);
+      py::arg("hands") = py::none(), py::arg("solver") = ToString(TrackSequenceOptions().solver),
+      py::arg("threads") = 0, py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true,
+      py::arg("side_view") = false, py::arg("masks") = false, py::arg("coarse_masks") = false,
+      py::arg("report") = false, py::arg("progress") = py::none(), kRunDoc);
   module.def(
       "detect",
       [](const Path& video, std::optional<double> fps, const std::string& detector,

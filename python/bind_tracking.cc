@@ -35,8 +35,9 @@ What was seen
   begin_s, end_s  seconds of the video, or of the keypoints
   rotate          turn the video clockwise by 90, 180 or 270 degrees, or "auto", so that people are upright
   captured_fps    slow motion: frames a second at which the video was filmed
-  hands           "auto", "on": hands and face of the keypoints, or found in the video, bend the fingers of a body that
-                  has them and turn the head; "off": those of the keypoints, by a body with fingers
+  hands           "auto", "on": hands and face of the keypoints, or found in the video (however small: "on"), bend the
+                  fingers of a body that has them and turn the head; "off": they do not; None: "auto" for a body with
+                  fingers, else "off"
 The camera
   camera          Camera, or a calibration file of which `view` names the camera
   focal_px        of a centred camera without distortion, pixels
@@ -155,7 +156,7 @@ void BindTracking(py::module_& module) {
          const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
          const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
          std::optional<double> end_s, const TurnArgument& rotate, std::optional<double> captured_fps,
-         const std::string& hands, const py::object& progress) {
+         const std::optional<std::string>& hands, const py::object& progress) {
         TrackArguments arguments;
         TrackRequest& request = arguments.request;
         request.dense = TextOf(dense);
@@ -183,7 +184,7 @@ void BindTracking(py::module_& module) {
         request.lifter = TextOf(lifter);
         request.live_lag = live_lag;
         request.detector = DetectorFrom(detector, pose_model, box_model, models);
-        request.detector.hands_and_faces = HandsAndFaceChoiceNamed(hands);
+        if (hands) request.detector.hands_and_faces = HandsAndFaceChoiceNamed(*hands);
         request.detect_rate = PositiveOr0(detect_rate, "detect_rate");
         request.use_mask = mask;
         request.from_s = begin_s;
@@ -224,7 +225,7 @@ void BindTracking(py::module_& module) {
       py::arg("detector") = "heavy", py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(),
       py::arg("models") = py::none(), py::arg("detect_rate") = py::none(), py::arg("mask") = true,
       py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("rotate") = 0,
-      py::arg("captured_fps") = py::none(), py::arg("hands") = "off", py::arg("progress") = py::none(),
+      py::arg("captured_fps") = py::none(), py::arg("hands") = py::none(), py::arg("progress") = py::none(),
       kTrackFunctionDoc);
   module.def("synthetic_clip", &SyntheticClip, py::arg("frames") = 180, py::kw_only(), py::arg("fps") = 30.0,
              py::arg("image_size") = std::pair(960, 720), py::arg("seed") = 1, py::arg("elevation_deg") = 8.0,

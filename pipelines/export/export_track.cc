@@ -372,7 +372,11 @@ ExportTrackReport ExportTrack(const ExportTrackRequest& request, const PipelineC
   CheckOtherFilesOf(request);
   std::vector<Track> tracks;
   for (const std::string& path : request.tracks) tracks.push_back(ReadTrack(path, MovingCamera::kTake));
-  const std::shared_ptr<const BodyModel> body = BodyOfTrack(request.body, tracks.front());
+  // A body with fingers takes tracks without them, too.
+  const auto most_joints = std::max_element(tracks.begin(), tracks.end(), [](const Track& a, const Track& b) {
+    return a.motion.poses.cols() < b.motion.poses.cols();
+  });
+  const std::shared_ptr<const BodyModel> body = BodyOfTrack(request.body, *most_joints);
   std::vector<const Track*> each;
   each.reserve(tracks.size());
   for (const Track& track : tracks) each.push_back(&track);

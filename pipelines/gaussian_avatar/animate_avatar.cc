@@ -17,6 +17,7 @@
 #include "geometry/base/percentile.h"
 #include "pipelines/animate/animation_limits.h"
 #include "pipelines/animate/background.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 #include "pipelines/gaussian_avatar/avatar_clip.h"
 #include "pipelines/gaussian_avatar/avatar_page.h"
@@ -90,6 +91,7 @@ class AvatarAnimation {
     } else {
       motion.track = request_.motion != nullptr ? *request_.motion : ReadTrack(request_.track, MovingCamera::kTake);
     }
+    motion.track = TrackOnBody(*avatar_->body, std::move(motion.track));
     if (!request_.report.empty() && motion.track.camera.model != CameraModel::kPinhole) {
       throw std::runtime_error(from + ": a track of a weakly perspective camera, expected a pinhole's for --report");
     }

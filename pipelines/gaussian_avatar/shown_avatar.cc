@@ -12,6 +12,7 @@
 #include "geometry/scene/rig.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/animate/animation_limits.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/gaussian_avatar/train_avatar.h"
 #include "render/gaussian_avatar/worn_garment.h"
 
@@ -76,8 +77,9 @@ std::vector<float> ShownAvatar::GarmentShare() {
 
 LearnedAvatar ReadLearnedAvatar(const std::string& run, const std::string& body) {
   const std::string path = std::filesystem::is_directory(run) ? AvatarPath(run) : run;
-  LearnedAvatar avatar{run, ReadAvatar(path), BodyOrBuiltin(body)};
+  LearnedAvatar avatar{run, ReadAvatar(path), nullptr};
   const AvatarFile& file = avatar.file;
+  avatar.body = BodyOfJoints(body, file.num_joints);
   const BodyModel& given = *avatar.body;
   if (file.num_joints != given.num_joints() || file.num_vertices != given.num_vertices() ||
       file.num_faces != given.num_faces()) {

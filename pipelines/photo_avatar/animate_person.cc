@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "data_tools/body/builtin_body.h"
 #include "data_tools/motion/motion_tools.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/video/image_file.h"
@@ -22,6 +23,7 @@
 #include "pipelines/animate/animation_limits.h"
 #include "pipelines/animate/background.h"
 #include "pipelines/animate/relight_frames.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 #include "pipelines/photo_avatar/person_folder.h"
 #include "pipelines/report_json.h"
@@ -54,6 +56,10 @@ class PersonAnimation {
     CheckRequest();
     if (!request_.track.empty())
       track_ = ReadTrack(request_.track, MovingCamera::kTake);  // before the person, who takes longer to make
+    // Fingers of the motion move the fingers of a person who is made now.
+    if (request_.photos.fit.body.empty() && track_.motion.body == BuiltinBodyWithHands().name()) {
+      request_.photos.fit.body = request_.person.empty() ? kBodyWithHands : "";
+    }
     std::optional<ShownLight> light;
     if (!request_.relight.empty()) light = OtherLight(request_.relight);
     clock_.Begin("person");
@@ -125,7 +131,7 @@ class PersonAnimation {
 
   void OpenTrack() {
     try {
-      track_ = MovedByPerson(person_, WithStillCamera(*person_.body, track_),
+      track_ = MovedByPerson(person_, WithStillCamera(*person_.body, TrackOnBody(*person_.body, std::move(track_))),
                              request_.own_stature ? PersonPlacing::kInScene : PersonPlacing::kInImage);
       if (!person_.garment.empty() && Draws()) cloth_.emplace(*person_.clothed, person_.garment, track_);
       if (!request_.moved_track.empty()) WriteTrack(request_.moved_track, track_);
@@ -232,7 +238,7 @@ class PersonAnimation {
     return summary_;
   }
 
-  const AnimatePersonRequest& request_;
+  AnimatePersonRequest request_;
   const PipelineCallbacks& callbacks_;
   const int threads_;
   Stopwatch total_;

@@ -14,6 +14,7 @@
 #include "data_tools/video/image_file.h"
 #include "geometry/base/check.h"
 #include "geometry/cloth/body_with_garment.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/photo_avatar/make_photo_person.h"
 #include "pipelines/report_json.h"
 #include "render/garment/person_cloth.h"
@@ -107,9 +108,9 @@ void WritePhotoPerson(const std::string& folder, const PhotoPerson& person) {
 
 PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_body) {
   PhotoPerson person;
-  person.bare = BodyOrBuiltin(bare_body);
   const std::string file = FileIn(folder, "body.npz");
   person.body = std::make_shared<const BodyModel>(LoadBody(file));
+  person.bare = BodyOfJoints(bare_body, person.body->num_joints());
   if (person.body->num_vertices() < person.bare->num_vertices() ||
       person.body->num_joints() != person.bare->num_joints() || !person.body->has_uv()) {
     throw std::runtime_error(Concatenate(file, ": has ", person.body->num_vertices(), " vertices and ",

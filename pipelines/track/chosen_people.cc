@@ -9,11 +9,13 @@
 #include "data_tools/body/builtin_body.h"
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
+#include "geometry/body/hand_skeleton.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/detect/upright_people.h"
 #include "pipelines/track/clip_camera_path.h"
 #include "pipelines/track/picture_lines.h"
 #include "pipelines/video/track_video.h"
+#include "tracking/hands/fit_hands.h"
 
 namespace bodyloom {
 namespace {
@@ -60,14 +62,16 @@ std::vector<int> ChoosePeople(const TrackPeopleRequest& request, const DetectedC
 
 /// Tracks them; progress is that of all fits.
 TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& scene, const PictureVertical& lines,
-                        const std::vector<DetectedObservations>& seen,
+                        const std::vector<DetectedObservations>& seen, const std::vector<const BodyModel*>& bodies,
                         const std::vector<std::vector<CameraPose>>& cameras, const PipelineCallbacks& callbacks) {
   std::vector<TrackSequenceInput> inputs;
+  const auto gets_fingers = [&](size_t i) { return bodies[i] != scene.body.get(); };
   for (const DetectedObservations& person : seen) {
     TrackSequenceInput& input = inputs.emplace_back(scene.ForTracker());
     input.keypoints = &person.keypoints;
     input.part_labels = person.mask ? &*person.mask : nullptr;
-    input.hands_and_face = person.hands_and_face.empty() ? nullptr : &person.hands_and_face;
+    const bool uses_hands = !person.hands_and_face.empty() && !gets_fingers(inputs.size() - 1);
+    input.hands_and_face = uses_hands ? &person.hands_and_face : nullptr;
     UsePictureVertical(lines, scene.camera_knowledge, &input);
     if (cameras.empty()) continue;
     input.camera_from_scene = &cameras[inputs.size() - 1];
@@ -83,7 +87,17 @@ TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& sc
   };
   TrackPeopleResult result = TrackPeople(std::move(inputs), options);
   if (cancelled) throw Cancelled();
-  for (TrackSequenceResult& person : result.people) person.track.playback = scene.playback;
+  for (size_t i = 0; i < seen.size(); ++i) {
+    TrackSequenceResult& person = result.people[i];
+    person.track.playback = scene.playback;
+    if (!gets_fingers(i) || !person.summary.IsUsable()) continue;
+    GiveFingers(*bodies[i], &person.track);
+    TrackSequenceInput input;
+    input.body = bodies[i];
+    input.keypoints = &seen[i].keypoints;
+    input.hands_and_face = &seen[i].hands_and_face;
+    FitHandsAndHead(input, ThreadsFor(options.num_threads), &person);
+  }
   return result;
 }
 
@@ -111,17 +125,14 @@ ChosenPeople DetectAndChoosePeople(const TrackPeopleRequest& request, const Pipe
   return people;
 }
 
-std::shared_ptr<const BodyModel> BodyFor(const TrackPeopleRequest& request, const GivenInMemory& given,
-                                         const ChosenPeople& people, std::shared_ptr<const BodyModel> body) {
-  const auto shows_hands = [&](int number) {
-    const HandsAndFaceSequence seen = HandsAndFaceOf(people.clip.people, people.everybody[size_t(number)]);
-    return std::any_of(seen.frames.begin(), seen.frames.end(), [](const auto& frame) {
-      return frame != nullptr && (frame->hands[HandsAndFace::kLeft] || frame->hands[HandsAndFace::kRight]);
-    });
-  };
-  const bool chooses = request.track.body.empty() && given.body == nullptr;
-  if (!chooses || !std::any_of(people.chosen.begin(), people.chosen.end(), shows_hands)) return body;
-  return BodyOrBuiltin(kBodyWithHands);
+bool GivesFingers(const TrackPeopleRequest& request, const GivenInMemory& given) {
+  return request.track.body.empty() && given.body == nullptr;
+}
+
+HandsAndFaceChoice HandsFor(const TrackPeopleRequest& request, const GivenInMemory& given, const BodyModel& body) {
+  const bool uses_hands = HasFingers(body) || GivesFingers(request, given);
+  return request.track.detector.hands_and_faces.value_or(uses_hands ? HandsAndFaceChoice::kAuto
+                                                                    : HandsAndFaceChoice::kOff);
 }
 
 TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople& people) {
@@ -150,12 +161,14 @@ TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople
 }
 
 TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneInputs& scene,
-                                 const ChosenPeople& people, const PipelineCallbacks& callbacks,
+                                 const ChosenPeople& people, bool gives_fingers, const PipelineCallbacks& callbacks,
                                  TrackPeopleReport* report) {
   TrackedScene tracked;
   for (const int number : people.chosen) {
     const PersonTrack& person = people.everybody[size_t(number)];
     tracked.seen.push_back(ObservationsOf(people.clip, person, SpanOf(person), request.track, scene));
+    const bool with_fingers = gives_fingers && ShowsHand(tracked.seen.back().hands_and_face);
+    tracked.bodies.push_back(with_fingers ? &BuiltinBodyWithHands() : scene.body.get());
   }
   const size_t count = tracked.seen.size();
   std::vector<std::vector<CameraPose>> cameras;  // of each person's frames
@@ -165,7 +178,7 @@ TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneI
   }
   callbacks.Begin(Concatenate("tracking ", count, count == 1 ? " person" : " people"));
   const PictureVertical lines = VerticalOfClip(request.track, people.clip, scene);
-  tracked.result = Solve(request, scene, lines, tracked.seen, cameras, callbacks);
+  tracked.result = Solve(request, scene, lines, tracked.seen, tracked.bodies, cameras, callbacks);
   report->scene = tracked.result.summary.scene;
   for (size_t i = 0; i < count; ++i) {
     TrackedPerson& person = report->people[i];
@@ -175,7 +188,7 @@ TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneI
     if (!person.solve.IsUsable()) continue;
     const Track& track = tracked.result.people[i].track;
     report->world = track.world.value_or(WorldFrame());
-    person.room = RoomPhysicsOnGround(track, *scene.body, ThreadsFor(request.track.solve.num_threads));
+    person.room = RoomPhysicsOnGround(track, *tracked.bodies[i], ThreadsFor(request.track.solve.num_threads));
     if (tracked.any) continue;
     tracked.any = true;
     report->camera_scale = person.solve.camera_path;

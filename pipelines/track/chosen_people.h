@@ -40,23 +40,29 @@ struct ChosenPeople {
 /// nobody is left, Cancelled.
 ChosenPeople DetectAndChoosePeople(const TrackPeopleRequest& request, const PipelineCallbacks& callbacks);
 
-/// `body`, or the built-in one with fingers if no body was named or given and somebody chosen shows a hand.
-std::shared_ptr<const BodyModel> BodyFor(const TrackPeopleRequest& request, const GivenInMemory& given,
-                                         const ChosenPeople& people, std::shared_ptr<const BodyModel> body);
+/// True where no body is named or given: people are fitted with the built-in one, and the tracks of those who show a
+/// hand are then put onto BuiltinBodyWithHands().
+bool GivesFingers(const TrackPeopleRequest& request, const GivenInMemory& given);
+
+/// The request's choice of hands and faces to look for; without one kAuto if `body` has fingers or tracks get them,
+/// else kOff.
+HandsAndFaceChoice HandsFor(const TrackPeopleRequest& request, const GivenInMemory& given, const BodyModel& body);
 
 /// Report of the clip's detections and of the selected people.
 TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople& people);
 
 struct TrackedScene {
   std::vector<DetectedObservations> seen;  ///< of the selected people, from first to last frame in view
+  std::vector<const BodyModel*> bodies;    ///< of the same people's tracks
   TrackPeopleResult result;                ///< of the same people
   bool any = false;                        ///< true if at least one person could be tracked
 };
 
-/// Tracks the selected people and adds the results to `report`, which is ReportOf() them. Warns by callbacks.Say() if a
+/// Tracks the selected people and adds the results to `report`, which is ReportOf() them; `gives_fingers`:
+/// GivesFingers(). Warns by callbacks.Say() if a
 /// camera assumed to be static seems to move. Throws std::runtime_error, Cancelled.
 TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneInputs& scene,
-                                 const ChosenPeople& people, const PipelineCallbacks& callbacks,
+                                 const ChosenPeople& people, bool gives_fingers, const PipelineCallbacks& callbacks,
                                  TrackPeopleReport* report);
 
 /// Throws NoPersonFound with the reason if TrackedScene::any is false.

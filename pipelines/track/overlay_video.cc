@@ -15,6 +15,7 @@
 #include "pipelines/track/observation_pixels.h"
 #include "pipelines/video/track_video.h"
 #include "render/view/overlay.h"
+#include "tracking/detection/people_between.h"
 
 namespace bodyloom {
 namespace {
@@ -77,18 +78,6 @@ OverlaySummary WriteFrames(VideoWriter* writer, const std::vector<double>& times
   return summary;
 }
 
-/// A hand or a face on the straight line from `before` to `after`; points that one of them lacks have confidence 0.
-template <typename Part>
-Part Between(const Part& before, const Part& after, double share) {
-  const auto blend = [share](float a, float b) { return float((1 - share) * a + share * b); };
-  Part part = before;
-  for (size_t k = 0; k < part.points.size(); ++k) {
-    const Keypoint &a = before.points[k], &b = after.points[k];
-    part.points[k] = {blend(a.x, b.x), blend(a.y, b.y), std::min(a.confidence, b.confidence)};
-  }
-  return part;
-}
-
 /// Adds to `filled` a part, get(frame), in frames between two that have it.
 template <typename Get>
 void FillPart(const HandsAndFaceSequence& seen, const Get& get, std::vector<HandsAndFace>* filled) {
@@ -100,7 +89,12 @@ void FillPart(const HandsAndFaceSequence& seen, const Get& get, std::vector<Hand
     const double gap = last < 0 ? 0 : times[size_t(t)] - times[size_t(last)];
     for (int k = last + 1; last >= 0 && gap <= kLongestGap_s && k < t; ++k) {
       const double share = (times[size_t(k)] - times[size_t(last)]) / gap;
-      get((*filled)[size_t(k)]) = Between(*get((*filled)[size_t(last)]), *get((*filled)[size_t(t)]), share);
+      const auto &before = *get((*filled)[size_t(last)]), &after = *get((*filled)[size_t(t)]);
+      auto& part = get((*filled)[size_t(k)]);
+      part = before;
+      for (size_t i = 0; i < part->points.size(); ++i) {
+        part->points[i] = Between(before.points[i], after.points[i], share);
+      }
     }
     last = t;
   }

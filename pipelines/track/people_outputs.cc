@@ -24,14 +24,14 @@ void WriteTracks(const std::string& folder, const std::vector<TrackSequenceResul
   }
 }
 
-std::vector<PersonOnPage> PeopleOnPage(const TrackPeopleReport& report, const BodyModel& body,
+std::vector<PersonOnPage> PeopleOnPage(const TrackPeopleReport& report, const std::vector<const BodyModel*>& bodies,
                                        const std::vector<TrackSequenceResult>& people) {
   std::vector<PersonOnPage> on_page;
   for (size_t i = 0; i < report.people.size(); ++i) {
     const TrackedPerson& person = report.people[i];
     if (person.track.empty()) continue;
     on_page.push_back({.number = person.number,
-                       .body = &body,
+                       .body = bodies[i],
                        .track = &people[i].track,
                        .summary = &person.solve,
                        .track_file = person.track});

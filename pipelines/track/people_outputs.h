@@ -19,8 +19,8 @@ std::string TrackFileIn(const std::string& folder, int number);
 /// Writes the usable tracks, in the order of report->people, whose `track` become these files.
 void WriteTracks(const std::string& folder, const std::vector<TrackSequenceResult>& people, TrackPeopleReport* report);
 
-/// The people whose tracks were written. Points into all three.
-std::vector<PersonOnPage> PeopleOnPage(const TrackPeopleReport& report, const BodyModel& body,
+/// The people whose tracks were written, with the body of each. Points into report and people.
+std::vector<PersonOnPage> PeopleOnPage(const TrackPeopleReport& report, const std::vector<const BodyModel*>& bodies,
                                        const std::vector<TrackSequenceResult>& people);
 
 /// Ends the clock and puts its stages and the memory into the report.

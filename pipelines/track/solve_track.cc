@@ -7,6 +7,7 @@
 #include "render/view/floor.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/clip/track_plan.h"
+#include "tracking/hands/fit_hands.h"
 #include "tracking/live/track_live.h"
 
 namespace bodyloom {
@@ -49,8 +50,10 @@ TrackSequenceResult SolveTrack(const TrackRequest& request, const TrackInputs& i
 
 std::vector<PlanEntry> PlanSolve(const TrackRequest& request, const TrackInputs& inputs) {
   const TrackSequenceOptions options = SolveOptionsOf(request, inputs);
-  return request.live_lag ? PlanTrackLive(inputs.ForTracker(), LiveOptionsOf(request, options))
-                          : PlanTrackSequence(inputs.ForTracker(), options);
+  if (request.live_lag) return PlanTrackLive(inputs.ForTracker(), LiveOptionsOf(request, options));
+  std::vector<PlanEntry> plan = PlanTrackSequence(inputs.ForTracker(), options);
+  if (request.detector.hands_and_faces == HandsAndFaceChoice::kOff) SkipHandsAndHead("switched off", &plan);
+  return plan;
 }
 
 namespace {

@@ -107,9 +107,15 @@ void AgreeOnImageSize(const std::string& path, int width, int height, Camera* ca
 /// Live tracking does not use the camera's motion.
 bool LooksForMotion(const TrackRequest& request) { return !request.live_lag && WhyNoCameraMotion(request).empty(); }
 
-/// Hands and faces of given detections are used where they were asked for, and by bodies with fingers.
+/// Hands and faces are used where they were asked for, and by bodies with fingers unless they are switched off.
+HandsAndFaceChoice HandsOf(const TrackRequest& request, const TrackInputs& inputs) {
+  if (request.live_lag) return HandsAndFaceChoice::kOff;
+  return request.detector.hands_and_faces.value_or(HasFingers(*inputs.body) ? HandsAndFaceChoice::kAuto
+                                                                            : HandsAndFaceChoice::kOff);
+}
+
 bool UsesHands(const TrackRequest& request, const TrackInputs& inputs) {
-  return request.detector.hands_and_faces != HandsAndFaceChoice::kOff || HasFingers(*inputs.body);
+  return HandsOf(request, inputs) != HandsAndFaceChoice::kOff;
 }
 
 void UseDense(const std::string& path, const TrackRequest& request, const PipelineCallbacks& callbacks,
@@ -228,7 +234,10 @@ void UsePath(const TrackRequest& request, const PipelineCallbacks& callbacks, Tr
 void UseDetectedPeople(const TrackRequest& request, const PipelineCallbacks& callbacks, TrackInputs* inputs) {
   TrackSettings detection = request;
   detection.find_camera_motion = LooksForMotion(request);
+  detection.detector.hands_and_faces = HandsOf(request, *inputs);
   const DetectedClip clip = DetectForTracking(detection, callbacks);
+  const std::string& no_hands = clip.detector.hands_and_faces.why_not;
+  if (!no_hands.empty()) callbacks.Message("hands and faces are not looked for: " + no_hands);
   SayAdviceOnTurn(request.video, clip.people, callbacks);
   const PersonTrack person = PersonOf(clip.people, request.person, request.video);
   DetectedObservations seen = ObservationsOf(clip, person, WholeClip(clip), request, *inputs);

@@ -93,7 +93,7 @@ void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scen
   PeopleOverlayVideo overlay;
   for (size_t i = 0; i < tracked.seen.size(); ++i) {
     if (report->people[i].track.empty()) continue;
-    overlay.people.push_back({.body = scene.body.get(),
+    overlay.people.push_back({.body = tracked.bodies[i],
                               .track = &tracked.result.people[i].track,
                               .detected = &tracked.seen[i].keypoints,
                               .hands_and_face = &tracked.seen[i].hands_and_face,
@@ -110,11 +110,11 @@ void WriteOverlay(const TrackPeopleClipRequest& request, const SceneInputs& scen
   report->outputs.push_back(path);
 }
 
-void WriteReportPage(const TrackPeopleClipRequest& request, const SceneInputs& scene, const TrackPeopleResult& result,
+void WriteReportPage(const TrackPeopleClipRequest& request, const SceneInputs& scene, const TrackedScene& tracked,
                      const PipelineCallbacks& callbacks, TrackPeopleReport* report) {
   ClipPageRequest page;
   page.out = FileIn(request, "report.html");
-  page.people = PeopleOnPage(*report, *scene.body, result.people);
+  page.people = PeopleOnPage(*report, tracked.bodies, tracked.result.people);
   TrackPeopleReport told = *report;
   told.outputs.clear();  // files are where the page is
   page.video = request.track.video;
@@ -137,9 +137,9 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   request.track = WithTurn(request.track, callbacks);
   request.track.all_masks = request.masks;
   SceneInputs scene = SceneOf(request, given);
+  request.track.detector.hands_and_faces = HandsFor(request, given, *scene.body);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
-  scene.body = BodyFor(request, given, people, scene.body);
   TrackPeopleReport report = ReportOf(request, people);
   FindMotion(request, people, callbacks, &clock, &scene, &report);
   clock.Begin("write");
@@ -150,7 +150,8 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
     WriteMasks(request, people, callbacks, &report);
   }
   clock.Begin("track");
-  const TrackedScene tracked = TrackDetectedPeople(request, scene, people, callbacks, &report);
+  const TrackedScene tracked =
+      TrackDetectedPeople(request, scene, people, GivesFingers(request, given), callbacks, &report);
   clock.Begin("write");
   WriteTracks(request.out, tracked.result.people, &report);
   if (request.overlay && tracked.any) {
@@ -159,7 +160,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   }
   if (request.report && tracked.any) {
     clock.Begin("page");
-    WriteReportPage(request, scene, tracked.result, callbacks, &report);
+    WriteReportPage(request, scene, tracked, callbacks, &report);
   }
   WriteSummary(request.out, &clock, &report);
   RequireAnyTrack(request, tracked);
@@ -175,14 +176,15 @@ TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& given_request, const
   TrackPeopleRequest request = given_request;
   request.track = WithTurn(request.track, callbacks);
   SceneInputs scene = SceneOf(request, given);
+  request.track.detector.hands_and_faces = HandsFor(request, given, *scene.body);
   clock.Begin("detect");
   const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
-  scene.body = BodyFor(request, given, people, scene.body);
   TrackedPeople found;
   found.report = ReportOf(request, people);
   FindMotion(request, people, callbacks, &clock, &scene, &found.report);
   clock.Begin("track");
-  TrackedScene tracked = TrackDetectedPeople(request, scene, people, callbacks, &found.report);
+  TrackedScene tracked =
+      TrackDetectedPeople(request, scene, people, GivesFingers(request, given), callbacks, &found.report);
   RequireAnyTrack(request, tracked);
   EndReport(&clock, &found.report);
   found.people = std::move(tracked.result.people);

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/observations/people_npz.h"
@@ -21,7 +22,11 @@
 #include "pipelines/track/people_outputs.h"
 #include "pipelines/track/picture_lines.h"
 #include "pipelines/track/track_inputs.h"
+#include "pipelines/track/view_hands.h"
 #include "pipelines/video/track_video.h"
+#include "tracking/hands/fit_hands.h"
+#include "tracking/hands/hands_in_views.h"
+#include "tracking/initialise/swap_repair.h"
 #include "tracking/rig/track_people_in_views.h"
 
 namespace bodyloom {
@@ -34,7 +39,8 @@ struct VideoOfView {
   SceneInputs scene;
   ChosenPeople people;
   PictureVertical lines;
-  std::vector<KeypointSequence> seen;  ///< of the chosen people, with times of the video's own clock
+  std::vector<KeypointSequence> seen;                ///< of the chosen people, with times of the video's own clock
+  std::vector<HandsAndFaceSequence> hands_and_face;  ///< of the same people and frames
   std::optional<CameraPose> camera_from_rig;
   RigCamera clock;  ///< where it is known
 };
@@ -155,8 +161,10 @@ void DetectInVideos(const TrackPeopleInVideosRequest& request, const PipelineCal
     }
     for (const int number : view.people.chosen) {
       const PersonTrack& person = view.people.everybody[static_cast<size_t>(number)];
-      KeypointSequence& seen = view.seen.emplace_back(
-          ObservationsOf(view.people.clip, person, SpanOf(person), view.request.track, view.scene).keypoints);
+      DetectedObservations observed =
+          ObservationsOf(view.people.clip, person, SpanOf(person), view.request.track, view.scene);
+      KeypointSequence& seen = view.seen.emplace_back(std::move(observed.keypoints));
+      view.hands_and_face.push_back(std::move(observed.hands_and_face));
       if (!view.clock.HasClock()) continue;
       for (double& time : seen.timestamps) time = view.clock.FirstTimeAt(time);
     }
@@ -227,18 +235,50 @@ std::vector<ViewReport> ReportsOf(const std::vector<VideoOfView>& videos, const 
   return reports;
 }
 
-/// The detections at these times of the same clock: of the nearest frame, missing where that is more than half a frame
-/// away.
-KeypointSequence NearestFrames(const KeypointSequence& keypoints, const std::vector<double>& times, double fps) {
+/// Hands and heads of everybody, by the views that show them; their tracks are put onto a body with fingers then if
+/// `gives_fingers`. Returns the bodies of all tracks.
+std::vector<const BodyModel*> FitHandsOfAll(const TrackPeopleInVideosRequest& request,
+                                            const std::vector<VideoOfView>& videos,
+                                            const std::vector<ViewReport>& reports, bool gives_fingers,
+                                            TrackPeopleInViewsResult* result) {
+  std::vector<const BodyModel*> bodies(result->people.size(), videos[0].scene.body.get());
+  for (size_t i = 0; i < result->people.size(); ++i) {
+    TrackSequenceResult& person = result->people[i];
+    if (!person.summary.IsUsable()) continue;
+    const std::vector<double>& times = person.track.motion.timestamps;
+    std::vector<HandsOfView> views;
+    for (size_t v = 0; v < videos.size(); ++v) {
+      const int number = result->person_in_view[i][v];
+      if (number < 0 || !reports[v].left_out.empty()) {
+        views.emplace_back();
+        continue;
+      }
+      const auto seen = static_cast<size_t>(number);
+      views.push_back(HandsOfViewAt(reports[v].camera, videos[v].hands_and_face[seen], videos[v].seen[seen].timestamps,
+                                    v == 0 || videos[v].clock.HasClock(), times, reports[v].fps));
+    }
+    const bool shows_hand =
+        std::any_of(views.begin(), views.end(), [](const HandsOfView& view) { return ShowsHand(view.seen); });
+    if (gives_fingers && shows_hand) {
+      bodies[i] = &BuiltinBodyWithHands();
+      GiveFingers(*bodies[i], &person.track);
+    }
+    if (std::all_of(views.begin(), views.end(), [](const HandsOfView& view) { return view.seen.empty(); })) continue;
+    FitHandsInViews(*bodies[i], views, FindCuts(videos[0].seen[i]), ThreadsFor(request.track.solve.num_threads),
+                    &person);
+  }
+  return bodies;
+}
+
+/// The detections at these times of the same clock.
+KeypointSequence KeypointsAt(const KeypointSequence& keypoints, const std::vector<double>& times, double fps) {
   KeypointSequence nearest = keypoints;
   nearest.timestamps = times;
   nearest.points.assign(times.size() * static_cast<size_t>(keypoints.num_points()), Keypoint());
+  const std::vector<int> frames = NearestFrames(keypoints.timestamps, times, fps);
   for (size_t t = 0; t < times.size(); ++t) {
-    const std::vector<double>& own = keypoints.timestamps;
-    auto at = std::lower_bound(own.begin(), own.end(), times[t]);
-    if (at == own.end() || (at != own.begin() && times[t] - at[-1] < *at - times[t])) --at;
-    if (std::abs(*at - times[t]) > 0.51 / fps) continue;
-    const auto first = keypoints.points.begin() + (at - own.begin()) * keypoints.num_points();
+    if (frames[t] < 0) continue;
+    const auto first = keypoints.points.begin() + static_cast<ptrdiff_t>(frames[t]) * keypoints.num_points();
     std::copy(first, first + keypoints.num_points(),
               nearest.points.begin() + static_cast<ptrdiff_t>(t) * keypoints.num_points());
   }
@@ -246,8 +286,8 @@ KeypointSequence NearestFrames(const KeypointSequence& keypoints, const std::vec
 }
 
 void WriteOverlayOfView(const TrackPeopleInVideosRequest& request, const VideoOfView& view, size_t v,
-                        const TrackPeopleInViewsResult& result, const PipelineCallbacks& callbacks,
-                        TrackPeopleReport* report) {
+                        const TrackPeopleInViewsResult& result, const std::vector<const BodyModel*>& bodies,
+                        const PipelineCallbacks& callbacks, TrackPeopleReport* report) {
   const RigCamera& camera = report->views[v].camera;
   const size_t count = result.people.size();
   std::vector<Track> tracks(count);
@@ -255,10 +295,10 @@ void WriteOverlayOfView(const TrackPeopleInVideosRequest& request, const VideoOf
   PeopleOverlayVideo overlay;
   for (size_t i = 0; i < count; ++i) {
     if (report->people[i].track.empty()) continue;
-    tracks[i] = TrackSeenBy(camera, *view.scene.body, result.people[i].track);
+    tracks[i] = TrackSeenBy(camera, *bodies[i], result.people[i].track);
     tracks[i].playback = view.scene.playback;
     PersonInOverlay& person = overlay.people.emplace_back();
-    person.body = view.scene.body.get();
+    person.body = bodies[i];
     person.track = &tracks[i];
     person.number = report->people[i].number;
     if (const int seen = result.person_in_view[i][v]; seen >= 0) {
@@ -266,7 +306,7 @@ void WriteOverlayOfView(const TrackPeopleInVideosRequest& request, const VideoOf
       if (view.clock.HasClock()) {
         for (double& time : own.timestamps) time = view.clock.TimeAt(time);
       }
-      detected[i] = NearestFrames(own, tracks[i].motion.timestamps, report->views[v].fps);
+      detected[i] = KeypointsAt(own, tracks[i].motion.timestamps, report->views[v].fps);
       person.detected = &detected[i];
     }
   }
@@ -281,11 +321,11 @@ void WriteOverlayOfView(const TrackPeopleInVideosRequest& request, const VideoOf
 }
 
 void WritePageOfViews(const TrackPeopleInVideosRequest& request, const std::vector<VideoOfView>& videos,
-                      const TrackPeopleInViewsResult& result, const PipelineCallbacks& callbacks,
-                      TrackPeopleReport* report) {
+                      const TrackPeopleInViewsResult& result, const std::vector<const BodyModel*>& bodies,
+                      const PipelineCallbacks& callbacks, TrackPeopleReport* report) {
   ClipPageRequest page;
   page.out = FileInFolder(request, "report.html");
-  page.people = PeopleOnPage(*report, *videos[0].scene.body, result.people);
+  page.people = PeopleOnPage(*report, bodies, result.people);
   page.video = videos[0].video;
   page.video_px_from_camera_px = videos[0].scene.camera.video_px_from_camera_px;
   page.view_name = videos[0].name;
@@ -307,9 +347,9 @@ void WritePageOfViews(const TrackPeopleInVideosRequest& request, const std::vect
 
 /// Adds the results of the fits to the report.
 void AddResults(const TrackPeopleInVideosRequest& request, const std::vector<VideoOfView>& videos,
-                const TrackPeopleInViewsResult& result, TrackPeopleReport* report) {
+                const TrackPeopleInViewsResult& result, const std::vector<const BodyModel*>& bodies,
+                TrackPeopleReport* report) {
   report->scene = result.scene;
-  report->views = ReportsOf(videos, result);
   for (size_t i = 0; i < result.people.size(); ++i) {
     TrackedPerson& person = report->people[i];
     person.solve = result.people[i].summary;
@@ -319,7 +359,7 @@ void AddResults(const TrackPeopleInVideosRequest& request, const std::vector<Vid
     if (!person.solve.IsUsable()) continue;
     const Track& track = result.people[i].track;
     report->world = track.world.value_or(WorldFrame());
-    person.room = RoomPhysicsOnGround(track, *videos[0].scene.body, ThreadsFor(request.track.solve.num_threads));
+    person.room = RoomPhysicsOnGround(track, *bodies[i], ThreadsFor(request.track.solve.num_threads));
   }
 }
 
@@ -345,18 +385,26 @@ TrackPeopleReport TrackPeopleInVideos(const TrackPeopleInVideosRequest& request,
   StageClock clock;
   clock.Begin("read");
   std::vector<VideoOfView> videos = LoadVideos(request, names, body, callbacks);
+  GivenInMemory given;
+  given.body = body;
+  for (VideoOfView& view : videos) {
+    view.request.track.detector.hands_and_faces = HandsFor(request, given, *view.scene.body);
+  }
   clock.Begin("detect");
   std::vector<std::string> outputs;
   DetectInVideos(request, callbacks, &videos, &outputs);
   TrackPeopleReport report = ReportOf(videos[0].request, videos[0].people);
   report.outputs = std::move(outputs);
   clock.Begin("track");
-  const TrackPeopleInViewsResult result = Solve(request, videos, callbacks);
+  TrackPeopleInViewsResult result = Solve(request, videos, callbacks);
   if (result.leader < 0) {
     throw NoPersonFound(videos[1].video + " does not show the motion of anybody in " + videos[0].video + ": " +
                         (videos[1].nobody.empty() ? result.left_out[1] : videos[1].nobody));
   }
-  AddResults(request, videos, result, &report);
+  report.views = ReportsOf(videos, result);
+  const std::vector<const BodyModel*> bodies =
+      FitHandsOfAll(request, videos, report.views, GivesFingers(request, given), &result);
+  AddResults(request, videos, result, bodies, &report);
   clock.Begin("write");
   WarnAboutViews(report.views, "other people", callbacks);
   WriteTracks(request.out, result.people, &report);
@@ -365,11 +413,11 @@ TrackPeopleReport TrackPeopleInVideos(const TrackPeopleInVideosRequest& request,
   for (size_t v = 0; request.overlay && v < videos.size(); ++v) {
     if (!report.views[v].left_out.empty()) continue;
     clock.Begin("overlay");
-    WriteOverlayOfView(request, videos[v], v, result, callbacks, &report);
+    WriteOverlayOfView(request, videos[v], v, result, bodies, callbacks, &report);
   }
   if (request.report) {
     clock.Begin("page");
-    WritePageOfViews(request, videos, result, callbacks, &report);
+    WritePageOfViews(request, videos, result, bodies, callbacks, &report);
   }
   WriteSummary(request.out, &clock, &report);
   return report;

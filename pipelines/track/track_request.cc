@@ -91,6 +91,10 @@ void CheckTrackRequest(const TrackRequest& request) {
   if (!request.camera_path.empty() && request.live_lag) {
     throw RequestError("--live is for a camera that stands still: leave out --camera-path or --live");
   }
+  if (request.detector.hands_and_faces.value_or(HandsAndFaceChoice::kOff) != HandsAndFaceChoice::kOff &&
+      request.live_lag) {
+    throw RequestError("--live follows neither hands nor faces: leave out --hands or --live");
+  }
   if (request.stature_m > 0 && request.live_lag) {
     throw RequestError("--live does not use --stature: leave it out");
   }

@@ -8,13 +8,18 @@
 
 #include "data_tools/observations/rig_io.h"
 #include "geometry/base/check.h"
+#include "geometry/base/parallel.h"
 #include "geometry/base/stopwatch.h"
 #include "geometry/scene/camera_path.h"
 #include "pipelines/files.h"
 #include "pipelines/track/solve_track.h"
 #include "pipelines/track/track_outputs.h"
+#include "pipelines/track/view_hands.h"
 #include "render/view/floor.h"
 #include "tracking/clip/track_plan.h"
+#include "tracking/hands/fit_hands.h"
+#include "tracking/hands/hands_in_views.h"
+#include "tracking/initialise/swap_repair.h"
 #include "tracking/rig/track_views.h"
 
 namespace bodyloom {
@@ -77,6 +82,10 @@ std::vector<PlanEntry> PlanOfViews(const TrackViewsRequest& request, const std::
   TrackSequenceInput input = views[0].inputs.ForTracker();
   input.views = &others;
   std::vector<PlanEntry> plan = PlanTrackSequence(input, SolveOptionsOf(request, views[0].inputs));
+  std::vector<HandsOfView> hands;
+  for (const ViewInputs& view : views) hands.push_back({{}, view.inputs.hands_and_face});
+  ReplanHandsAndHead(PlanHandsInViews(*input.body, hands), &plan);
+  if (request.detector.hands_and_faces == HandsAndFaceChoice::kOff) SkipHandsAndHead("switched off", &plan);
   for (size_t v = 1; v < views.size(); ++v) {
     for (PlanEntry& entry : plan) {
       if (entry.what != "view " + std::to_string(v + 1)) continue;
@@ -117,6 +126,22 @@ std::vector<ViewReport> ReportOnViews(const std::vector<ViewInputs>& views, cons
   return reports;
 }
 
+/// Hands and head of the joint track, by the views that show them. Cameras that move tell nothing of them.
+void FitHandsOf(const std::vector<ViewInputs>& views, const std::vector<ViewReport>& reports, int num_threads,
+                TrackSequenceResult* joint) {
+  std::vector<HandsOfView> hands;
+  const std::vector<double>& times = joint->track.motion.timestamps;
+  for (size_t v = 0; v < views.size(); ++v) {
+    const TrackInputs& inputs = views[v].inputs;
+    const bool used = v == 0 || (reports[v].left_out.empty() && inputs.camera_from_scene.empty());
+    hands.push_back(used ? HandsOfViewAt(reports[v].camera, inputs.hands_and_face, inputs.timestamps(),
+                                         v == 0 || views[v].clock.HasClock(), times, views[v].fps)
+                         : HandsOfView());
+  }
+  if (std::all_of(hands.begin(), hands.end(), [](const HandsOfView& view) { return view.seen.empty(); })) return;
+  FitHandsInViews(*views[0].inputs.body, hands, FindCuts(*views[0].inputs.keypoints), num_threads, joint);
+}
+
 }  // namespace
 
 TrackReport TrackViewsClip(const TrackViewsRequest& request, const PipelineCallbacks& callbacks) {
@@ -152,6 +177,7 @@ TrackReport TrackViewsClip(const TrackViewsRequest& request, const PipelineCallb
   if (joint.IsUsable()) {
     if (!result.joint.track.world) result.joint.track.world = AssumedWorld(result.joint.track.joints);
     report.views = ReportOnViews(views, result);
+    FitHandsOf(views, report.views, ThreadsFor(request.solve.num_threads), &result.joint);
   }
   WarnAboutViews(report.views, "another person", callbacks);
   report.solve = std::move(joint);

@@ -578,7 +578,7 @@ def track(
     end_s: float | None = None,
     rotate: int | Literal["auto"] = 0,
     captured_fps: float | None = None,
-    hands: Literal["auto", "on", "off"] = "off",
+    hands: Literal["auto", "on", "off"] | None = None,
     progress: _Progress | None = None,
 ) -> Track: ...
 def track_views(
@@ -637,7 +637,7 @@ def run(
     end_s: float | None = None,
     rotate: int | Literal["auto"] = 0,
     captured_fps: float | None = None,
-    hands: Literal["auto", "on", "off"] = "off",
+    hands: Literal["auto", "on", "off"] | None = None,
     solver: Literal["chain+ceres", "chain", "ceres"] = "chain+ceres",
     threads: int = 0,
     uncertainty: bool = True,

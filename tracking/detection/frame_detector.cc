@@ -30,7 +30,7 @@ DetectedPerson ToPerson(const DetectedPose& pose) {
 class BlazePoseFrames : public FrameDetector {
  public:
   explicit BlazePoseFrames(const FrameDetectorOptions& options) : detector_(options.models, options.blazepose) {
-    if (options.hands_and_faces == HandsAndFaceChoice::kOff) return;
+    if (options.hands_and_faces.value_or(HandsAndFaceChoice::kOff) == HandsAndFaceChoice::kOff) return;
     HandsAndFaceOptions parts;
     parts.num_threads = options.blazepose.num_threads;
     if (options.hands_and_faces == HandsAndFaceChoice::kOn) parts.min_side_px = 0;

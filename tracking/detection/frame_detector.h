@@ -10,6 +10,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,8 +27,9 @@ struct FrameDetectorOptions {
   std::string models;               ///< folder of BlazePose's networks; empty: where they are installed (model_files.h)
   PeopleDetectorOptions blazepose;  ///< max_people and num_threads count for the others too
   std::string pose_model;           ///< an ONNX file in place of BlazePose; empty: BlazePose
-  /// Hands and faces of the people whom BlazePose finds; none with `pose_model`.
-  HandsAndFaceChoice hands_and_faces = HandsAndFaceChoice::kOff;
+  /// Hands and faces of the people whom BlazePose finds; not looked for with `pose_model`. None: the job decides,
+  /// MakeFrameDetector() looks for none.
+  std::optional<HandsAndFaceChoice> hands_and_faces;
   std::string box_model;  ///< an ONNX file that finds people for RTMPose; empty: BlazePose does
 };
 

@@ -26,19 +26,22 @@ double LongerSide(const DetectedPerson& person) {
   return std::max(right->x - left->x, bottom->y - top->y);
 }
 
-DetectedPerson Between(const DetectedPerson& before, const DetectedPerson& after, double share) {
+DetectedPerson PersonBetween(const DetectedPerson& before, const DetectedPerson& after, double share) {
   DetectedPerson person = before;
   person.hands_and_face = nullptr;  // they move too fast to be interpolated
-  const auto blend = [share](float a, float b) { return float((1 - share) * a + share * b); };
   for (size_t k = 0; k < person.points.size(); ++k) {
-    const Keypoint &a = before.points[k], &b = after.points[k];
-    const bool seen = a.confidence > 0 && b.confidence > 0;
-    person.points[k] = {blend(a.x, b.x), blend(a.y, b.y), seen ? blend(a.confidence, b.confidence) : 0};
+    person.points[k] = Between(before.points[k], after.points[k], share);
   }
   return person;
 }
 
 }  // namespace
+
+Keypoint Between(const Keypoint& before, const Keypoint& after, double share) {
+  const auto blend = [share](float a, float b) { return float((1 - share) * a + share * b); };
+  const bool seen = before.confidence > 0 && after.confidence > 0;
+  return {blend(before.x, after.x), blend(before.y, after.y), seen ? blend(before.confidence, after.confidence) : 0};
+}
 
 void FillBetween(const std::vector<char>& detected, PeopleSequence* people) {
   BODYLOOM_CHECK(detected.size() == people->frames.size(), "FillBetween: ", detected.size(), " flags for ",
@@ -60,7 +63,7 @@ void FillBetween(const std::vector<char>& detected, PeopleSequence* people) {
                            &after = seen.frames[size_t(to)][size_t(next_index)];
       const double start = seen.timestamps[size_t(from)], length = seen.timestamps[size_t(to)] - start;
       for (size_t t = frame_of[size_t(from)] + 1; t < frame_of[size_t(to)]; ++t) {
-        people->frames[t].push_back(Between(before, after, (people->timestamps[t] - start) / length));
+        people->frames[t].push_back(PersonBetween(before, after, (people->timestamps[t] - start) / length));
       }
     }
   }

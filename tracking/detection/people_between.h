@@ -8,6 +8,9 @@
 
 namespace bodyloom {
 
+/// The point on the straight line from `before` to `after`, linear in its confidence too; confidence 0 if either has 0.
+Keypoint Between(const Keypoint& before, const Keypoint& after, double share);
+
 /// Fills the frames t with detected[t] = 0. Each person whom LinkPeople() finds in both detected frames nearest to t,
 /// before and after it, gets landmarks that are linear in time:
 ///   p(t) = (1 − a) p(t₀) + a p(t₁),   a = (time − time₀) / (time₁ − time₀),

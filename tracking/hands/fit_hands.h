@@ -19,6 +19,14 @@
 
 namespace bodyloom {
 
+/// Puts the track of a 24-joint body onto `body`, whose first 22 joints are the same and which has fingers in place of
+/// hand joints: at rest, as the hand prior's mean, with the σ of their wrists. Everything else stays, byte for byte.
+/// Throws std::invalid_argument for other numbers of joints.
+void GiveFingers(const BodyModel& body, Track* track);
+
+/// True if a hand is seen in any frame.
+bool ShowsHand(const HandsAndFaceSequence& seen);
+
 /// The reason why the hands of this body cannot be fitted to these observations, which may be null; "": they can.
 std::string WhyNoHands(const BodyModel& body, const HandsAndFaceSequence* seen);
 
@@ -33,8 +41,15 @@ std::vector<PartFitSummary> FitHands(const BodyModel& body, const HandsAndFaceSe
 /// Lines of the plan for hands and head; none without hands and faces in the input of a body that has no fingers.
 std::vector<PlanEntry> PlanHandsAndHead(const TrackSequenceInput& input);
 
+/// Puts these lines in place of those that the plan has of them.
+void ReplanHandsAndHead(const std::vector<PlanEntry>& lines, std::vector<PlanEntry>* plan);
+
+/// Says in the plan's lines of PlanHandsAndHead(), if it has any, that neither runs, and why.
+void SkipHandsAndHead(const std::string& why, std::vector<PlanEntry>* plan);
+
 /// The stage after a solve: fits the hands and turns the head of its track (turn_head.h) by input.hands_and_face, and
-/// adds to the summary. Does nothing without them, or when the track is not usable.
+/// adds to the summary, whose plan gets the lines of PlanHandsAndHead(). Does nothing without them, or when the track
+/// is not usable.
 void FitHandsAndHead(const TrackSequenceInput& input, int num_threads, TrackSequenceResult* result);
 
 }  // namespace bodyloom

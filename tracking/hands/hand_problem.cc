@@ -131,6 +131,9 @@ void HandProblem::Memory::Observe(const HandObservation& seen, double weight, co
   if (!frame->arm.camera.Project(frame->arm.wrist_in_camera, &a) || !frame->arm.camera.Project(middle, &b)) return;
   const double length_px = (b - a).norm();
   if (length_px < options.min_length_px) return;
+  const Keypoint& wrist = seen.points[0];
+  const bool elsewhere = (Eigen::Vector2d(wrist.x, wrist.y) - a).norm() > options.max_wrist_lengths * length_px;
+  if (wrist.confidence > 0 && elsewhere) return;
   lengths_px.push_back(length_px);
   double* values = frame->values.data();
   const auto loss = [&] {

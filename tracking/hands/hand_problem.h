@@ -39,7 +39,10 @@ struct HandFitOptions {
   SteadyPrior place = {.sigma = 0.04, .length_s = 0.4};   ///< metres
   double log_size_sigma = 0.2;
   double min_confidence = 0.2;  ///< of points whose σ is not known; others are not used
-  double min_length_px = 8;     ///< of a hand from wrist to middle knuckle, by the body; smaller ones are not used
+  /// Of a hand's wrist from the body's, in lengths of the hand from wrist to middle knuckle; farther ones are not used:
+  /// the detector took left for right there, or somebody else's hand.
+  double max_wrist_lengths = 2;
+  double min_length_px = 8;  ///< of a hand from wrist to middle knuckle, by the body; smaller ones are not used
   int max_iterations = 25;
 };
 

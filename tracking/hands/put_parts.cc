@@ -17,6 +17,28 @@ std::vector<std::pair<int, std::string>> CocoRowsNamed(const BodyModel& body, co
   return rows;
 }
 
+PartOfTrack PartOfHand(const BodyModel& body, const HandSkeleton& hand, const Track& track) {
+  const std::string side = hand.side == HandSide::kLeft ? "left" : "right";
+  PartOfTrack part;
+  part.turned = {body.parents()[size_t(hand.wrist)], hand.wrist};
+  part.turned.insert(part.turned.end(), hand.joint.begin(), hand.joint.end());
+  part.placed.assign(hand.joint.begin(), hand.joint.end());
+  part.landmarks = CocoRowsNamed(body, track, {side + "_wrist", side + "_elbow"});
+  return part;
+}
+
+PartOfTrack PartOfHead(const BodyModel& body, const Track& track) {
+  const int head = body.FindJoint("head");
+  PartOfTrack part;
+  part.turned = {head};
+  for (int j = head + 1; j < body.num_joints(); ++j) {
+    const std::vector<int>& above = body.ancestors(j);
+    if (std::find(above.begin(), above.end(), head) != above.end()) part.placed.push_back(j);
+  }
+  part.landmarks = CocoRowsNamed(body, track, {"nose", "_eye", "_ear"});
+  return part;
+}
+
 void PutPart(const BodyModel& body, const MatrixX3d& rest, const BodyPose& pose, const PartOfTrack& part, int t,
              Track* track) {
   const Eigen::VectorXd axis_angles = AxisAngleFromPose(body, pose);

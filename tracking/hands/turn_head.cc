@@ -84,7 +84,52 @@ std::optional<Matrix3d> FaceFromHead(const BodyModel& body, const Eigen::VectorX
   return body_from_face.rotation.transpose();
 }
 
+bool HasDepth(const FaceObservation& face) {
+  return std::any_of(face.depth_px.begin(), face.depth_px.end(), [](float depth) { return std::isfinite(depth); });
+}
+
+namespace {
+
+/// S of a face without depth; none if too few points are known, or if the mean face does not lie on them.
+std::optional<Matrix3d> RotationOfFlatFace(const FaceObservation& face) {
+  constexpr int kJawPoints = 17, kRounds = 50;
+  constexpr float kMinConfidence = 0.2F;
+  constexpr double kFarthest = 0.2;  // root mean square, relative to the face's
+  std::vector<int> known;
+  for (int k = kJawPoints; k < kFacePoints; ++k) {
+    const Keypoint& point = face.points[size_t(k)];
+    if (point.confidence >= kMinConfidence && std::isfinite(point.x) && std::isfinite(point.y)) known.push_back(k);
+  }
+  const auto count = static_cast<Eigen::Index>(known.size());
+  if (count < (kFacePoints - kJawPoints) / 2) return std::nullopt;
+  MatrixX3d mean(count, 3), seen(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Keypoint& point = face.points[size_t(known[size_t(i)])];
+    mean.row(i) = MeanFace().row(known[size_t(i)]);
+    seen.row(i) << point.x, point.y, 0;
+  }
+  mean.rowwise() -= mean.colwise().mean().eval();
+  seen.rowwise() -= seen.colwise().mean().eval();
+  AlignmentResult aligned = AlignPoints(mean, seen);
+  MatrixX3d laid;
+  for (int round = 0; round < kRounds && aligned.status == AlignmentStatus::kUnique; ++round) {
+    laid = mean * aligned.target_from_source.rotation.transpose();
+    laid *= laid.leftCols<2>().cwiseProduct(seen.leftCols<2>()).sum() / laid.leftCols<2>().squaredNorm();
+    seen.col(2) = laid.col(2);
+    aligned = AlignPoints(mean, seen);
+  }
+  if (aligned.status != AlignmentStatus::kUnique) return std::nullopt;
+  const double away = std::sqrt((laid - seen).squaredNorm() / laid.squaredNorm());
+  return away < kFarthest ? std::optional(aligned.target_from_source.rotation) : std::nullopt;
+}
+
+}  // namespace
+
 std::optional<Matrix3d> CameraFromFace(const FaceObservation& face, const Vector3d& ray) {
+  if (!HasDepth(face)) {
+    const std::optional<Matrix3d> flat = RotationOfFlatFace(face);
+    return flat ? std::optional<Matrix3d>(RotationBetweenDirections(Vector3d::UnitZ(), ray) * *flat) : std::nullopt;
+  }
   MatrixX3d seen(kFacePoints, 3);
   for (int k = 0; k < kFacePoints; ++k) {
     const Keypoint& point = face.points[size_t(k)];
@@ -116,7 +161,7 @@ std::string WhyNoHead(const BodyModel& body, const HandsAndFaceSequence* seen) {
     if (CameraFromFace(*frame->face, Vector3d::UnitZ())) return "";
     any = true;
   }
-  return any ? "the faces have no depth" : "no face is seen";
+  return any ? "too few points of the faces are known, or they lie on no face" : "no face is seen";
 }
 
 PartFitSummary TurnHead(const BodyModel& body, const HandsAndFaceSequence& seen, const std::vector<char>& cut_before,
@@ -131,6 +176,7 @@ PartFitSummary TurnHead(const BodyModel& body, const HandsAndFaceSequence& seen,
   const MatrixX3d rest = body.RestJoints(track->motion.betas);
   HeadFrames all;
   std::vector<std::optional<Matrix3d>> measured;
+  std::vector<double> sigmas;
   std::vector<Matrix3d> camera_from_head;
   bool cut = true;
   for (int t = 0; t < track->num_frames(); ++t) {
@@ -157,6 +203,8 @@ PartFitSummary TurnHead(const BodyModel& body, const HandsAndFaceSequence& seen,
     all.cut_before.push_back(cut ? 1 : 0);
     all.times_s.push_back(track->motion.timestamps[size_t(t)]);
     measured.push_back(from_face);
+    const bool flat = from_face && !HasDepth(*seen.frames[size_t(t)]->face);
+    sigmas.push_back(flat ? options.flat_face_sigma : options.face_sigma);
     camera_from_head.push_back(G);
     cut = false;
   }
@@ -168,7 +216,7 @@ PartFitSummary TurnHead(const BodyModel& body, const HandsAndFaceSequence& seen,
     if (!measured[i]) continue;
     ++summary.frames_seen;
     const double weight = IndependentShare(i, all.times_s, all.cut_before, options.errors_last_s);
-    problem.AddResidualBlock(new HeadTurnCost(*measured[i], camera_from_head[i], options.face_sigma),
+    problem.AddResidualBlock(new HeadTurnCost(*measured[i], camera_from_head[i], sigmas[i]),
                              new ceres::ScaledLoss(new GemanMcClureLoss(options.kernel), weight, ceres::TAKE_OWNERSHIP),
                              blocks[i]);
   }
@@ -185,13 +233,7 @@ PartFitSummary TurnHead(const BodyModel& body, const HandsAndFaceSequence& seen,
     summary.why = "Ceres: " + solved.message;
     return summary;
   }
-  PartOfTrack part;
-  part.turned = {head};
-  for (int j = head + 1; j < body.num_joints(); ++j) {
-    const std::vector<int>& above = body.ancestors(j);
-    if (std::find(above.begin(), above.end(), head) != above.end()) part.placed.push_back(j);
-  }
-  part.landmarks = CocoRowsNamed(body, *track, {"nose", "_eye", "_ear"});
+  const PartOfTrack part = PartOfHead(body, *track);
   for (size_t i = 0; i < all.frames.size(); ++i) {
     const int t = all.frames[i];
     BodyPose pose = PoseFromAxisAngle(body, track->motion.poses.row(t), track->motion.trans.row(t));

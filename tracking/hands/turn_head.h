@@ -3,8 +3,10 @@
 ///
 /// A mean face is laid onto the body's head at rest: by nose and eyes, then by the nearest vertices of the head, with a
 /// rotation A, a scale and a translation. In an image the same mean face is laid onto the points (x, y and depth),
-/// which gives the rotation S of the face about the viewing ray V: the head's axes are then turned to the camera's by M
-/// = V S A. Unknown is h in every frame, with the head's rotation R exp(h), R the body's. Residuals:
+/// which gives the rotation S of the face about the viewing ray V: the head's axes are then turned to the camera's by
+/// M = V S A. Points without depth, as other programs write them, get that of the mean face as it lies on them, in
+/// rounds; those of the jaw are left out then, as they follow the outline in the image and not the bone. Unknown is h
+/// in every frame, with the head's rotation R exp(h), R the body's. Residuals:
 ///   face    log(Mᵀ G exp(h)) / σ, Geman–McClure, G the head's rotation to the camera by the body
 ///   prior   h near 0, a process over time (steady_prior.h)
 /// Neck and trunk stay as they are, byte for byte.
@@ -34,8 +36,11 @@ const MatrixX3d& MeanFace();
 /// landmarks nose, left_eye and right_eye.
 std::optional<Eigen::Matrix3d> FaceFromHead(const BodyModel& body, const Eigen::VectorXd& betas);
 
-/// V S: from the axes of MeanFace() to the camera's; none without depth. `ray`: the direction to the head in the
-/// camera, of any length; z for weak perspective.
+/// True if the face's points have depth.
+bool HasDepth(const FaceObservation& face);
+
+/// V S: from the axes of MeanFace() to the camera's; none if too few points are known, or if they lie on no face.
+/// `ray`: the direction to the head in the camera, of any length; z for weak perspective.
 std::optional<Eigen::Matrix3d> CameraFromFace(const FaceObservation& face, const Eigen::Vector3d& ray);
 
 /// log(Mᵀ G exp(h)) / σ, of h.
@@ -51,9 +56,10 @@ class HeadTurnCost : public ceres::SizedCostFunction<3, 3> {
 };
 
 struct HeadTurnOptions {
-  double face_sigma = 0.08;     ///< radians, one axis: of a face that differs from the mean one, and of the body's head
-  double kernel = 4;            ///< in standard deviations
-  double errors_last_s = 0.15;  ///< as of hands (hand_problem.h)
+  double face_sigma = 0.08;  ///< radians, one axis: of a face that differs from the mean one, and of the body's head
+  double flat_face_sigma = 0.1;                        ///< the same of a face without depth
+  double kernel = 4;                                   ///< in standard deviations
+  double errors_last_s = 0.15;                         ///< as of hands (hand_problem.h)
   SteadyPrior head = {.sigma = 0.3, .length_s = 0.4};  ///< radians
 };
 

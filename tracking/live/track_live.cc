@@ -10,6 +10,7 @@
 #include "geometry/body/posed_body.h"
 #include "tracking/clip/track_plan.h"
 #include "tracking/clip/track_result.h"
+#include "tracking/hands/fit_hands.h"
 #include "tracking/problem/input_checks.h"
 #include "tracking/terms/dense/dense.h"
 #include "tracking/terms/observability.h"
@@ -91,6 +92,7 @@ std::vector<PlanEntry> PlanTrackLive(const TrackSequenceInput& input, const Live
                              Concatenate("each frame is fitted when the ", options.lag,
                                          " after it have come, in a window of ", options.lag + options.context)});
   if (input.part_labels != nullptr) plan.push_back({"part labels", false, "not in live mode"});
+  SkipHandsAndHead("not in live mode", &plan);
   return plan;
 }
 

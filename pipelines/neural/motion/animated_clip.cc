@@ -12,6 +12,7 @@
 #include "geometry/scene/rig.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/animate/animation_limits.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/neural/motion/motion_data.h"
 #include "render/uv_maps/posed_track.h"
 
@@ -48,7 +49,8 @@ AnimatedClip::AnimatedClip(const AnimatedClipRequest& request, const MotionRun& 
     RequireRate(data_->track(), run.fps, request.data, "its track.npz as --track is shown at that rate");
     return;
   }
-  body_ = BodyOrBuiltin(request.body);
+  body_ = BodyOfTrack(request.body, request.data.empty() ? ReadTrack(request.track, MovingCamera::kTake)
+                                                         : SinglePersonDataset(request.data).track());
   own_track_ = TrackOf(request, *body_, run.fps, &notes_);
   if (!request.shape_of_track) TakeShapeOf(run);
   const double size = PixelsPerMetre(*body_, *own_track_);

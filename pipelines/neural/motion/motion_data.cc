@@ -16,6 +16,7 @@
 #include "data_tools/observations/part_labels.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/base/check.h"
+#include "pipelines/body_of_track.h"
 #include "render/uv_maps/posed_track.h"
 
 namespace bodyloom {
@@ -77,8 +78,7 @@ void FillMotion(const PersonFrames& frames, const DenseHistory* dense, const Est
 
 class MotionData::Impl {
  public:
-  Impl(const MotionDataRequest& request, const MotionProfile& profile, int multiple)
-      : body_(BodyOrBuiltin(request.body)) {
+  Impl(const MotionDataRequest& request, const MotionProfile& profile, int multiple) {
     if (IsSinglePersonDataset(request.data)) {
       set_.emplace(request.data);
       track_ = request.track.empty() ? set_->track() : ReadTrack(request.track);
@@ -93,6 +93,7 @@ class MotionData::Impl {
       }
       track_ = ReadTrack(request.track);
     }
+    body_ = BodyOfTrack(request.body, track_);
     PersonFramesOptions options;
     options.uv_size = profile.uv_size;
     options.motion = request.motion;

@@ -14,6 +14,7 @@
 #include "geometry/base/prefetcher.h"
 #include "geometry/scene/rig.h"
 #include "pipelines/animate/animation_limits.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 #include "pipelines/neural/person/scores_json.h"
 #include "pipelines/neural/weights_folder.h"
@@ -98,8 +99,8 @@ class PhotoPersonAnimation : public FramePainter {
 
   void OpenMotion() {
     const bool of_data = !request_.data.empty();
-    track_ = of_data ? SinglePersonDataset(request_.data).track()
-                     : WithStillCamera(*photo().body, ReadTrack(request_.track, MovingCamera::kTake));
+    track_ = of_data ? SinglePersonDataset(request_.data).track() : ReadTrack(request_.track, MovingCamera::kTake);
+    track_ = WithStillCamera(*photo().body, TrackOnBody(*photo().body, std::move(track_)));
     maps_ = MapsOfMotion(request_, photo(), of_data ? request_.data : request_.track, renderer_->size(),
                          renderer_->texture_size(), &track_);
   }

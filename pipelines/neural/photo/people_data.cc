@@ -22,6 +22,7 @@
 #include "geometry/base/hash_random.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/animate/person_segmentation.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/neural/photo/photo_input.h"
 #include "tracking/detection/clothes_parser.h"
 
@@ -31,11 +32,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A clip's track: the true one, or another of the same frames.
-Track TrackOfClip(const SinglePersonDataset& set, const std::string& name) {
+Track TrackOfClip(const SinglePersonDataset& set, const std::string& name, const BodyModel& body) {
   Track own = set.track();
   if (name.empty()) return own;
   const std::string path = (fs::path(set.path()) / name).string();
-  Track track = ReadTrack(path);
+  Track track = TrackOnBody(body, ReadTrack(path));
   if (track.num_frames() != own.num_frames() || track.camera.width != own.camera.width ||
       track.camera.height != own.camera.height) {
     throw std::runtime_error(Concatenate(path, ": ", track.num_frames(), " frames of ", track.camera.width, "x",
@@ -146,7 +147,7 @@ class PeopleData::Impl {
       const uint64_t hash = Mix(Mix(request_.seed) ^ clips_.size());
       clips_.push_back(std::make_unique<Clip>(path));
       Clip& clip = *clips_.back();
-      clip.track = TrackOfClip(clip.set, request_.given.track);
+      clip.track = TrackOfClip(clip.set, request_.given.track, *body_);
       clip.track = WithBodyError(*body_, std::move(clip.track), request_.body_error_px * UniformOf(hash), Mix(hash));
       if (!clip.set.info().has.labels) throw std::runtime_error(path + ": has no labels, which training needs");
       PhotoMapsOptions options;

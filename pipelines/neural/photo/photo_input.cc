@@ -21,6 +21,7 @@
 #include "geometry/scene/track_edits.h"
 #include "pipelines/animate/person_segmentation.h"
 #include "pipelines/animate/read_photos.h"
+#include "pipelines/body_of_track.h"
 #include "render/texture/complete/partial_texture.h"
 #include "render/uv_maps/posed_track.h"
 #include "tracking/detection/clothes_parser.h"
@@ -52,7 +53,7 @@ struct Files {
 
   const Track& TrackOf(const std::string& path) {
     const auto [place, is_new] = tracks.try_emplace(path);
-    if (is_new) place->second = ReadTrack(path);
+    if (is_new) place->second = TrackOnBody(*body, ReadTrack(path));
     return place->second;
   }
 };

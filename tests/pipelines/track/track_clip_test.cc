@@ -8,9 +8,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/npz.h"
 #include "data_tools/motion/track_io.h"
+#include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/observations_npz.h"
+#include "data_tools/observations/people_npz.h"
 #include "pipelines/export/export_track.h"
 #include "pipelines/page/report_page.h"
 #include "pipelines/score/evaluate_track.h"
@@ -36,6 +39,70 @@ TrackRequest RequestFor(const SynthClipFiles& clip, const ScratchFolder& folder)
   request.cameras = clip.camera;
   request.out = folder / "track.npz";
   return request;
+}
+
+/// A file of that clip's joints and of a right hand whose points lie in a row from the wrist.
+std::string WithHand(const SynthClipFiles& clip, const ScratchFolder& folder) {
+  const KeypointSequence seen = LoadDetections(clip.observations);
+  const auto wrist = std::find(seen.names.begin(), seen.names.end(), "right_wrist") - seen.names.begin();
+  PeopleSequence people;
+  people.convention = {seen.convention, seen.names};
+  people.timestamps = seen.timestamps;
+  people.image_width = seen.image_width, people.image_height = seen.image_height;
+  for (int t = 0; t < seen.num_frames(); ++t) {
+    DetectedPerson& person = people.frames.emplace_back().emplace_back();
+    for (int k = 0; k < seen.num_points(); ++k) person.points.push_back(seen.at(t, k));
+    const Keypoint at = seen.at(t, static_cast<int>(wrist));
+    HandObservation hand;
+    for (int k = 0; k < kHandPoints; ++k) {
+      hand.points[size_t(k)] = {at.x + 2.0F * float(k % 4), at.y + float(k), 0.9F};
+      hand.sigma_px[size_t(k)] = 2;
+    }
+    auto parts = std::make_shared<HandsAndFace>();
+    parts->hands[HandsAndFace::kRight] = hand;
+    person.hands_and_face = parts;
+  }
+  const std::string path = folder / "with_hand.npz";
+  WritePeople(path, people);
+  return path;
+}
+
+TEST(TrackClip, HandsOfAFileAreUsedByABodyWithFingersUnlessTheyAreSwitchedOff) {
+  const ScratchFolder folder;
+  TrackRequest request = RequestFor(SmallClip(folder), folder);
+  request.detections = WithHand(SmallClip(folder), folder);
+  const auto line = [](const TrackRequest& of, const std::string& what) {
+    TrackRequest planned = of;
+    planned.plan = true;
+    for (const PlanEntry& entry : TrackClip(planned).solve.plan) {
+      if (entry.what == what) return (entry.runs ? "run: " : "skip: ") + entry.why;
+    }
+    return std::string("no line");
+  };
+  EXPECT_EQ(line(request, "hands"), "no line") << "the built-in body has none";
+  request.body = kBodyWithHands;
+  EXPECT_EQ(line(request, "hands"), "run: fingers, wrists and forearms, after the body");
+  const TrackReport used = TrackClip(request);
+  ASSERT_EQ(used.solve.hands.size(), 2U);
+  EXPECT_TRUE(used.solve.hands[1].ran);
+  EXPECT_EQ(used.solve.hands[1].frames_seen, 8);
+  const Track with = ReadTrack(request.out);
+
+  request.detector.hands_and_faces = HandsAndFaceChoice::kOff;
+  EXPECT_EQ(line(request, "hands"), "skip: switched off");
+  EXPECT_EQ(line(request, "head by the face"), "skip: switched off");
+  EXPECT_TRUE(TrackClip(request).solve.hands.empty());
+  const Track without = ReadTrack(request.out);
+  EXPECT_EQ(without.motion.poses.cols(), with.motion.poses.cols()) << "the body that was asked for";
+  EXPECT_TRUE((without.motion.poses.rightCols(90).array() == 0).all()) << "its fingers rest";
+  EXPECT_FALSE((with.motion.poses.rightCols(90).array() == 0).all());
+
+  request.detector.hands_and_faces.reset();
+  request.live_lag = 4;
+  EXPECT_EQ(line(request, "hands"), "skip: not in live mode");
+  request.detector.hands_and_faces = HandsAndFaceChoice::kOn;
+  EXPECT_THAT([&] { TrackClip(request); },
+              ::testing::ThrowsMessage<RequestError>(::testing::HasSubstr("--live follows neither hands")));
 }
 
 TEST(TrackClip, ReportsWhatItWroteAndHowFarItIs) {

@@ -9,17 +9,21 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/part_labels.h"
 #include "data_tools/video/video_reader.h"
+#include "data_tools/video/video_writer.h"
 #include "geometry/base/check.h"
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_files.h"
+#include "tests/tracking/detection/models_there.h"
 
 namespace bodyloom::track_people_clip_test {
 namespace {
@@ -130,6 +134,122 @@ TEST_F(TrackPeopleClipOnRealVideo, MasksAreCutWhereTheCameraStandsStillAndTracks
   EXPECT_EQ(nlohmann::json::parse(FileBytes(request.out + "/summary.json"))["masks_cut"], false);
   EXPECT_TRUE(FileBytes(request.out + "/person_1.npz") == track);
   EXPECT_FALSE(FileBytes(request.out + "/mask_1.npz") == cut);
+}
+
+/// A woman who squats, whose hands are large, and the same made four times smaller.
+class HandsOnRealVideo : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string why = WhyNoDetection(video_); !why.empty()) GTEST_SKIP() << why;
+    if (!HandModelsAreThere()) GTEST_SKIP() << "no networks of hands; ./dev models fetches them";
+  }
+
+  [[nodiscard]] TrackPeopleClipRequest Squats() const {
+    TrackPeopleClipRequest request;
+    request.track.video = video_;
+    request.track.to_s = 0.7;
+    request.track.detector.blazepose.network = PoseNetworkSize::kFull;
+    request.overlay = false;
+    request.out = folder_ / "out";
+    return request;
+  }
+  /// Tracks as the request says, and with --hands off.
+  void RunBoth(TrackPeopleClipRequest request) {
+    report_ = TrackPeopleClip(request);
+    bytes_ = FileBytes(request.out + "/person_0.npz");
+    track_ = ReadTrack(request.out + "/person_0.npz");
+    request.track.detector.hands_and_faces = HandsAndFaceChoice::kOff;
+    TrackPeopleClip(request);
+    bytes_without_ = FileBytes(request.out + "/person_0.npz");
+    without_ = ReadTrack(request.out + "/person_0.npz");
+  }
+
+  const std::string video_ = SharedDir() + "/data/tfjs_pose/pose_squats.mp4";
+  const ScratchFolder folder_;
+  TrackPeopleReport report_;
+  Track track_, without_;
+  std::string bytes_, bytes_without_;
+};
+
+TEST_F(HandsOnRealVideo, BendFingersAndTurnForearmsAndHeadAndNothingElse) {
+  RunBoth(Squats());
+  const BodyModel& body = BuiltinBodyWithHands();
+  ASSERT_EQ(track_.motion.body, body.name());
+  ASSERT_EQ(without_.motion.body, BuiltinBody().name());
+  const TrackSequenceSummary& solve = report_.people[0].solve;
+  ASSERT_EQ(solve.hands.size(), 2U);
+  EXPECT_TRUE(solve.hands[0].ran && solve.hands[1].ran && solve.head->ran);
+  EXPECT_GT(solve.hands[0].frames_seen, 3);
+  EXPECT_THAT(ToText(report_), HasSubstr("left hand seen in"));
+  EXPECT_TRUE(std::any_of(solve.plan.begin(), solve.plan.end(),
+                          [](const PlanEntry& entry) { return entry.what == "hands" && entry.runs; }));
+
+  const std::set<std::string> turned = {"head", "l_elbow", "r_elbow", "l_wrist", "r_wrist"};
+  for (int j = 0; j < 22; ++j) {
+    const bool same = track_.motion.poses.middleCols<3>(3 * j) == without_.motion.poses.middleCols<3>(3 * j);
+    EXPECT_EQ(same, turned.count(SmplJointNames()[size_t(j)]) == 0) << SmplJointNames()[size_t(j)];
+  }
+  EXPECT_EQ(track_.motion.trans, without_.motion.trans);
+  EXPECT_EQ(track_.motion.betas, without_.motion.betas);
+  EXPECT_EQ(track_.camera.fx, without_.camera.fx);
+  EXPECT_EQ(track_.joint_sigma.leftCols(22), without_.joint_sigma.leftCols(22));
+  for (int t = 0; t < track_.num_frames(); ++t) {
+    EXPECT_EQ(track_.joints[size_t(t)].topRows(22), without_.joints[size_t(t)].topRows(22));
+    for (const int k : {5, 6, 11, 12, 13, 14, 15, 16}) {  // shoulders, hips and below
+      EXPECT_EQ(track_.coco17[size_t(t)].row(k), without_.coco17[size_t(t)].row(k)) << k;
+    }
+  }
+}
+
+TEST_F(HandsOnRealVideo, WithoutLargeOnesTheTrackIsAsWithoutLookingForThem) {
+  TrackPeopleClipRequest request = Squats();
+  const std::string small = folder_ / "small.mp4";
+  VideoReader reader(video_);
+  const int width = reader.info().width / 4, height = reader.info().height / 4;
+  VideoWriter writer(small, width, height, reader.info().fps);
+  for (Image frame, quarter(width, height); writer.num_frames() < 12 && reader.Read(&frame);) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) std::copy_n(frame.pixel(4 * x, 4 * y), 3, quarter.pixel(x, y));
+    }
+    writer.Write(quarter);
+  }
+  writer.Finish();
+  request.track.video = small;
+  RunBoth(request);
+  EXPECT_GT(report_.hands_and_faces.hands.parts, 0) << "they were looked for";
+  EXPECT_EQ(report_.hands_and_faces.hands.found, 0);
+  EXPECT_EQ(track_.motion.body, BuiltinBody().name());
+  EXPECT_TRUE(bytes_ == bytes_without_);
+}
+
+TEST_F(HandsOnRealVideo, ABodyWithoutFingersIsNotLookedAtForThem) {
+  TrackPeopleRequest request = Squats();
+  request.track.to_s = 0.3;
+  GivenInMemory given;
+  given.body = BodyOrBuiltin("");
+  const TrackedPeople found = TrackPeopleToMemory(request, {}, given);
+  EXPECT_EQ(found.report.hands_and_faces.hands.parts, 0);
+  EXPECT_EQ(found.people[0].track.motion.body, BuiltinBody().name());
+  request.track.detector.hands_and_faces = HandsAndFaceChoice::kAuto;
+  const TrackedPeople asked = TrackPeopleToMemory(request, {}, given);
+  EXPECT_EQ(asked.people[0].track.motion.body, BuiltinBody().name()) << "the given one";
+  ASSERT_TRUE(asked.people[0].summary.head);
+  EXPECT_TRUE(asked.people[0].summary.head->ran);
+  EXPECT_EQ(asked.people[0].summary.hands[0].why, "the body has no finger joints");
+}
+
+TEST_F(HandsOnRealVideo, WithoutTheirNetworksItSaysSoAndRuns) {
+  TrackPeopleClipRequest request = Squats();
+  request.track.to_s = 0.3;
+  const std::string networks = folder_ / "body_alone";
+  std::filesystem::create_directory(networks);
+  for (const char* file : {kPoseDetectorFile, kPoseLandmarkFullFile}) {
+    std::filesystem::create_symlink(std::filesystem::absolute(FindModelFile(file)), networks + "/" + file);
+  }
+  request.track.detector.models = networks;
+  RunBoth(request);
+  EXPECT_THAT(ToText(report_), HasSubstr("hands    not looked for: hand_recrop.tflite"));
+  EXPECT_TRUE(bytes_ == bytes_without_);
 }
 
 TEST_F(TrackPeopleClipOnRealVideo, CancelledItKeepsWhatWasDetected) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/observations/rig_io.h"
@@ -17,6 +18,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/real_video.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/tracking/detection/models_there.h"
 
 namespace bodyloom::track_people_in_videos_test {
 namespace {
@@ -98,6 +100,14 @@ TEST_F(TrackPeopleInRealVideos, MatchesBothPeopleAndWritesARigAnOverlayAViewAndA
   for (const TrackedPerson& person : report.people) {
     EXPECT_THAT(person.views, ElementsAre("cam01", "cam02"));
     EXPECT_NEAR(ReadTrack(person.track).motion.timestamps[0], 0.2, 0.02) << "the first video's time";
+  }
+  if (HandModelsAreThere()) {
+    for (const TrackedPerson& person : report.people) {
+      ASSERT_EQ(person.solve.hands.size(), 2U);
+      EXPECT_EQ(ReadTrack(person.track).motion.body, BuiltinBodyWithHands().name());
+      EXPECT_TRUE(person.solve.hands[0].ran || person.solve.hands[1].ran);
+    }
+    EXPECT_THAT(ToText(report), HasSubstr("hand cam02: seen in"));
   }
   const std::vector<RigCamera> rig = ReadRig(request.out + "/rig.json");
   ASSERT_EQ(rig.size(), 2U);

@@ -113,6 +113,52 @@ TEST(FitHands, ChangesNothingButHandsAndForearms) {
   EXPECT_EQ(moved, 12 * 2 * 17);
 }
 
+/// The track on the body of 24 joints.
+Track WithoutFingers(const Track& track) {
+  Track body = track;
+  const int T = track.num_frames();
+  body.motion.body = BuiltinBody().name();
+  body.motion.poses = RowMatrixXd::Zero(T, 72);
+  body.motion.poses.leftCols(66) = track.motion.poses.leftCols(66);
+  body.joint_sigma = track.joint_sigma.leftCols(24);
+  for (int t = 0; t < T; ++t) {
+    const BodyPose pose = PoseFromAxisAngle(BuiltinBody(), body.motion.poses.row(t), body.motion.trans.row(t));
+    body.joints[t] = PoseSkeleton(BuiltinBody(), BuiltinBody().RestJoints({}), pose).joints;
+  }
+  return body;
+}
+
+TEST(FitHands, FingersAreGivenToATrackThatStaysAsItIs) {
+  const SyntheticHands made = MakeSyntheticHands({.pose = "flat", .frames = 4});
+  Track before = WithoutFingers(made.track);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  before.motion.poses.row(2).setConstant(nan), before.motion.trans.row(2).setConstant(nan);
+  before.joints[2].setConstant(nan);
+  before.joint_sigma.col(20).setConstant(0.03);  // of the left wrist
+  Track track = before;
+  const BodyModel& body = BuiltinBodyWithHands();
+  GiveFingers(body, &track);
+  EXPECT_EQ(track.motion.body, body.name());
+  ASSERT_EQ(track.motion.poses.cols(), 3 * body.num_joints());
+  for (const int t : {0, 1, 3}) {
+    EXPECT_EQ(track.motion.poses.row(t).head(66), before.motion.poses.row(t).head(66));
+    EXPECT_EQ(track.joints[t].topRows(22), before.joints[t].topRows(22));
+    EXPECT_EQ(track.coco17[t], before.coco17[t]);
+    const BodyPose pose = PoseFromAxisAngle(body, track.motion.poses.row(t), track.motion.trans.row(t));
+    EXPECT_LT((PoseSkeleton(body, body.RestJoints({}), pose).joints - track.joints[t]).norm(), 1e-9);
+    for (size_t side = 0; side < 2; ++side) {
+      const HandSkeleton hand = HandOfSide(side);
+      const HandAngleVector angles = AnglesAt(track, hand, t);
+      for (const int angle : FreeHandAngles()) EXPECT_NEAR(angles[angle], BuiltinHandPrior().mean[angle], 1e-6);
+      for (const int joint : hand.joint) EXPECT_EQ(track.joint_sigma(t, joint), side == 0 ? 0.03 : 0.02);
+    }
+  }
+  EXPECT_FALSE(track.motion.HasPose(2)) << "lost frames stay lost";
+  EXPECT_TRUE(track.joints[2].array().isNaN().all());
+  EXPECT_THROW(GiveFingers(body, &track), std::invalid_argument) << "it has them already";
+  EXPECT_THROW(GiveFingers(BuiltinBody(), &before), std::invalid_argument);
+}
+
 TEST(FitHands, SameBytesForAnyNumberOfThreads) {
   SyntheticHands one = MakeSyntheticHands({.pose = "counting", .frames = 20}), two = one;
   FitHands(BuiltinBodyWithHands(), one.seen, {}, {}, 1, &one.track);
@@ -137,9 +183,12 @@ TEST(FitHands, SaysWhyNot) {
   EXPECT_EQ(WhyNoHands(body, &made.seen), "");
   EXPECT_EQ(WhyNoHands(body, nullptr), "no hands in the input");
   EXPECT_EQ(WhyNoHands(BuiltinBody(), &made.seen), "the body has no finger joints");
+  EXPECT_TRUE(ShowsHand(made.seen));
   HandsAndFaceSequence none = made.seen;
   for (auto& frame : none.frames) frame = nullptr;
   EXPECT_EQ(WhyNoHands(body, &none), "no hand is seen");
+  EXPECT_FALSE(ShowsHand(none));
+  EXPECT_EQ(WhyNoHands(BuiltinBody(), &none), "no hand is seen") << "which the body's joints do not matter for";
   const Track before = made.track;
   const auto summaries = FitHands(body, none, {}, {}, 1, &made.track);
   EXPECT_FALSE(summaries[0].ran);
@@ -147,6 +196,20 @@ TEST(FitHands, SaysWhyNot) {
   EXPECT_EQ(made.track.motion.poses, before.motion.poses);
   none.frames.pop_back();
   EXPECT_THROW(FitHands(body, none, {}, {}, 1, &made.track), std::invalid_argument);
+}
+
+TEST(FitHands, AHandAtTheOthersPlaceIsNotUsed) {
+  SyntheticHands made = MakeSyntheticHands({.pose = "fist", .frames = 20}), exchanged = made;
+  for (size_t t = 5; t < 8; ++t) {
+    auto frame = std::make_shared<HandsAndFace>(*made.seen.frames[t]);
+    std::swap(frame->hands[0], frame->hands[1]);
+    exchanged.seen.frames[t] = frame;
+    made.seen.frames[t] = nullptr;
+  }
+  FitHands(BuiltinBodyWithHands(), made.seen, {}, {}, 2, &made.track);
+  const auto summaries = FitHands(BuiltinBodyWithHands(), exchanged.seen, {}, {}, 2, &exchanged.track);
+  EXPECT_EQ(summaries[0].frames_seen, 17);
+  EXPECT_EQ(exchanged.track.motion.poses, made.track.motion.poses) << "as where they are not seen";
 }
 
 TEST(FitHands, TinyHandsAreLeftAtRest) {
@@ -184,6 +247,9 @@ TEST(FitHands, TheBodyIsAsWithoutHands) {
   ASSERT_EQ(plan.size(), 2U);
   EXPECT_TRUE(plan[0].what == "hands" && plan[0].runs);
   EXPECT_TRUE(plan[1].what == "head by the face" && !plan[1].runs) << "no face is seen";
+  std::vector<PlanEntry> skipped = plan;
+  SkipHandsAndHead("switched off", &skipped);
+  EXPECT_TRUE(!skipped[0].runs && skipped[0].why == "switched off" && !skipped[1].runs);
   const TrackSequenceResult plain = FitClip(without, options), fitted = FitClip(with, options);
   const TrackPeopleResult people = TrackPeople({with}, options);
   ASSERT_TRUE(plain.summary.IsUsable());
@@ -191,6 +257,13 @@ TEST(FitHands, TheBodyIsAsWithoutHands) {
   ASSERT_EQ(fitted.summary.hands.size(), 2U);
   EXPECT_TRUE(fitted.summary.hands[0].ran && fitted.summary.hands[1].ran);
   EXPECT_EQ(people.people[0].track.motion.poses, fitted.track.motion.poses);
+  const auto line = [](const TrackSequenceResult& result) {
+    const auto& lines = result.summary.plan;
+    return std::count_if(lines.begin(), lines.end(),
+                         [](const auto& entry) { return entry.what == "hands" && entry.runs; });
+  };
+  EXPECT_EQ(line(fitted), 1);
+  EXPECT_EQ(line(people.people[0]), 1) << "though they come after all fits";
   EXPECT_EQ(fitted.track.motion.trans, plain.track.motion.trans);
   std::set<int> free;
   for (size_t side = 0; side < 2; ++side) {

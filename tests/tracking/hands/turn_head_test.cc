@@ -156,6 +156,58 @@ TEST(TurnHead, FindsYawPitchAndRollWithinFiveDegrees) {
   EXPECT_EQ(turns, 8);
 }
 
+/// The face as other programs write it: without depth and σ.
+HandsAndFaceSequence WithoutDepth(HandsAndFaceSequence seen) {
+  for (auto& frame : seen.frames) {
+    auto flat = std::make_shared<HandsAndFace>(*frame);
+    flat->face->depth_px.fill(std::nanf(""));
+    flat->face->sigma_px = 0;
+    frame = flat;
+  }
+  return seen;
+}
+
+TEST(TurnHead, FindsThemWithoutDepthAndJawWithinTenDegrees) {
+  double sum = 0;
+  int turns = 0;
+  for (const double yaw : {-60.0, -30.0, 0.0, 30.0, 60.0}) {
+    for (const double pitch : {-25.0, 0.0, 25.0}) {
+      SyntheticHead made = MakeSyntheticHead(HeadTurned(yaw, pitch, 10), 1);
+      made.seen = WithoutDepth(std::move(made.seen));
+      for (auto& frame : made.seen.frames) {
+        auto no_jaw = std::make_shared<HandsAndFace>(*frame);
+        for (int k = 0; k < 17; ++k) no_jaw->face->points[k].x += 40;  // it may lie anywhere
+        frame = no_jaw;
+      }
+      EXPECT_EQ(WhyNoHead(BuiltinBody(), &made.seen), "");
+      EXPECT_TRUE(TurnHead(BuiltinBody(), made.seen, {}, {}, &made.track).ran);
+      const double off = RotationAngleBetween(HeadOf(made.track, 10), HeadTurned(yaw, pitch, 10));
+      EXPECT_LT(off, 10 * kDegree) << yaw << " " << pitch << ": " << off / kDegree;
+      sum += off / kDegree;
+      ++turns;
+    }
+  }
+  EXPECT_EQ(turns, 15);
+  EXPECT_LT(sum / turns, 6);
+}
+
+TEST(TurnHead, PointsThatAreNoFaceTurnNothing) {
+  SyntheticHead made = MakeSyntheticHead(HeadTurned(30, 0, 0), 1, 6);
+  made.seen = WithoutDepth(std::move(made.seen));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> anywhere(0, 100);
+  for (auto& frame : made.seen.frames) {
+    auto scattered = std::make_shared<HandsAndFace>(*frame);
+    for (Keypoint& point : scattered->face->points) point.x = anywhere(random), point.y = 300;
+    for (Keypoint& point : scattered->face->points) point.y += anywhere(random);
+    frame = scattered;
+  }
+  EXPECT_EQ(WhyNoHead(BuiltinBody(), &made.seen), "too few points of the faces are known, or they lie on no face");
+  const Track before = made.track;
+  EXPECT_FALSE(TurnHead(BuiltinBody(), made.seen, {}, {}, &made.track).ran);
+  EXPECT_EQ(made.track.motion.poses, before.motion.poses);
+}
+
 TEST(TurnHead, ChangesTheHeadAlone) {
   SyntheticHead made = MakeSyntheticHead(HeadTurned(30, 10, 0), 1, 6);
   const Track before = made.track;
@@ -186,10 +238,13 @@ TEST(TurnHead, SaysWhyNot) {
   SyntheticHead made = MakeSyntheticHead(Matrix3d::Identity(), 0, 2);
   EXPECT_EQ(WhyNoHead(BuiltinBody(), &made.seen), "");
   EXPECT_EQ(WhyNoHead(BuiltinBody(), nullptr), "no faces in the input");
-  auto flat = std::make_shared<HandsAndFace>(*made.seen.frames[0]);
-  flat->face->depth_px.fill(std::nanf(""));
-  for (auto& frame : made.seen.frames) frame = flat;
-  EXPECT_EQ(WhyNoHead(BuiltinBody(), &made.seen), "the faces have no depth");
+  HandsAndFaceSequence unsure = WithoutDepth(made.seen);
+  for (auto& frame : unsure.frames) {
+    auto few = std::make_shared<HandsAndFace>(*frame);
+    for (size_t k = 40; k < few->face->points.size(); ++k) few->face->points[k].confidence = 0.1F;
+    frame = few;
+  }
+  EXPECT_EQ(WhyNoHead(BuiltinBody(), &unsure), "too few points of the faces are known, or they lie on no face");
   for (auto& frame : made.seen.frames) frame = nullptr;
   EXPECT_EQ(WhyNoHead(BuiltinBody(), &made.seen), "no face is seen");
   const Track before = made.track;
