@@ -12,11 +12,14 @@
 ///   noisy       where it was, off by smooth drifts of 0.5 degrees and 3 cm about each axis (time constant 1 s)
 ///   rotations   how it was turned, from where the first frame was seen
 ///   found       what is found from background points (tracking/camera_motion/camera_motion.h) 3 to 9 m from
-///               the first camera, followed with 0.3 pixels of noise; 15 % of them move by themselves
+///               the first camera, followed with 0.3 pixels of noise; 15 % of them move by themselves; the path of a
+///               camera that goes somewhere has no length, as for `scale`
 ///   none        nothing: it is taken to stand still
 /// Camera "turning" is the hand-held one without its translations.
-/// pa: PA-MPJPE of all joints, mm. w, wa, drift, slide: data_tools/evaluation/world_drift.h. ratio: scale found / true.
+/// pa: PA-MPJPE of all joints, mm. w, wa, drift, slide: data_tools/evaluation/world_drift.h. ratio: scale found / true,
+/// 0: the tracker found none.
 /// standing: GroundSummary::standing_speed_mps, of what the tracker itself sees of standing feet.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -68,8 +71,9 @@ Motion MotionNamed(const std::string& name, int frames) {
   return TakeFrames(motion, 0, std::min(frames, motion.num_frames()));
 }
 
-/// One row: the clip tracked with this path (or none).
-std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<CameraPose>* path, double scale_m) {
+/// One row: the clip tracked with this path (or none). `unit_m`: metres a unit of a path of unknown scale.
+std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<CameraPose>* path, double scale_m,
+                                    double unit_m) {
   TrackSequenceInput input;
   input.body = &BuiltinBody();
   input.prior = &BuiltinPosePrior();
@@ -90,14 +94,18 @@ std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<Cam
           1e3 * drift.wa_mpjpe_m,
           100 * drift.root_drift,
           drift.foot_slide_mps,
-          scale_m == 0 ? result.summary.camera_path.scale_m / kUnit : kNotMeasured,
+          scale_m == 0 ? result.summary.camera_path.scale_m / unit_m : kNotMeasured,
           result.summary.ground.standing_speed_mps,
           result.summary.ground.up_spread_deg,
           seconds};
 }
 
-/// The path found from points of the background; empty if the camera seems to stand or to go somewhere.
-std::vector<CameraPose> FoundPath(const SynthClip& clip, uint64_t seed) {
+/// The path found from points of the background, empty if none is; metres a unit, 0: it turns in place.
+struct FoundPath {
+  std::vector<CameraPose> poses;
+  double unit_m = 0;
+};
+FoundPath FindPath(const SynthClip& clip, uint64_t seed) {
   SyntheticBackground background;
   const Camera& camera = clip.truth.camera;
   background.width = camera.width;
@@ -120,7 +128,16 @@ std::vector<CameraPose> FoundPath(const SynthClip& clip, uint64_t seed) {
   options.focal_known = true;
   const CameraMotion motion = FindCameraMotion(TracksOf(background), options);
   if (!motion.has_path() || motion.zoom > 1) return {};
-  return SampleCameraPath(motion.path, clip.truth.motion.timestamps).camera_from_scene;
+  FoundPath found{SampleCameraPath(motion.path, clip.truth.motion.timestamps).camera_from_scene, 0};
+  if (motion.kind == CameraMotionKind::kMoving) {
+    Eigen::Matrix3Xd units(3, Eigen::Index(path.size())), metres(3, Eigen::Index(path.size()));
+    for (size_t t = 0; t < path.size(); ++t) {
+      units.col(Eigen::Index(t)) = CentreOf(found.poses[t]);
+      metres.col(Eigen::Index(t)) = CentreOf(path[t]);
+    }
+    found.unit_m = Eigen::umeyama(units, metres, true).col(0).head<3>().norm();
+  }
+  return found;
 }
 
 void Run(const BenchArguments& arguments, const std::string& command) {
@@ -143,14 +160,15 @@ void Run(const BenchArguments& arguments, const std::string& command) {
         if (turns) options.camera_path.shake_m = 0;
         const SynthClip clip = MakeSynthClip(BuiltinBody(), motion, options);
         const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
-        const auto add = [&](const std::string& told, const std::vector<CameraPose>* given, double scale_m) {
+        const auto add = [&](const std::string& told, const std::vector<CameraPose>* given, double scale_m,
+                             double unit_m = kUnit) {
           report.rows.push_back(
-              {camera + ", " + told, {name, std::to_string(seed)}, TrackAndMeasure(clip, given, scale_m)});
+              {camera + ", " + told, {name, std::to_string(seed)}, TrackAndMeasure(clip, given, scale_m, unit_m)});
           std::fprintf(stderr, "%s %s %d %s\n", camera.c_str(), name.c_str(), seed, told.c_str());
         };
         add("none", nullptr, 1);
-        const std::vector<CameraPose> found = FoundPath(clip, options.seed);
-        add("found", found.empty() ? nullptr : &found, 1);
+        const FoundPath found = FindPath(clip, options.seed);
+        add("found", found.poses.empty() ? nullptr : &found.poses, found.unit_m > 0 ? 0 : 1, found.unit_m);
         if (path.empty()) continue;
         add("path", &path, 1);
         const std::vector<CameraPose> unit = ScaledPath(path, 1 / kUnit), turned = ScaledPath(path, 0),
