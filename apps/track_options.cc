@@ -85,7 +85,9 @@ void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
          "--still", [&c] { c.find_camera_motion = false; },
          "the camera stands still: do not look for its motion in the video")
       ->group(kCamera);
-  app.add_option("--camera-path-out", c.camera_path_out, "the path of a camera that was found to turn, as JSON")
+  app.add_option("--camera-path-out", c.camera_path_out,
+                 "the camera's path as it was found in the video: JSON, or COLMAP's images.txt with "
+                 "cameras.txt and points3D.txt beside it")
       ->group(kCamera)
       ->type_name("FILE");
   app.add_option("--camera-scale", c.camera_scale_m,

@@ -134,7 +134,8 @@ void BindPeople(py::module_& module) {
       [](const std::variant<Path, std::vector<Path>>& video, const std::optional<Path>& out, int people,
          std::optional<int> person, double min_seconds, std::optional<double> fps, double min_confidence,
          const std::string& view, const std::string& known, bool same_lens, const std::optional<CameraArgument>& camera,
-         std::optional<double> focal_px, std::optional<double> focal_35mm, const std::optional<BodyArgument>& body,
+         std::optional<double> focal_px, std::optional<double> focal_35mm, bool still,
+         const std::optional<Path>& camera_path_out, const std::optional<BodyArgument>& body,
          std::optional<double> stature_m, const std::optional<Path>& prior, const std::optional<Path>& lifter,
          const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
          const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
@@ -159,6 +160,8 @@ void BindPeople(py::module_& module) {
         track.min_confidence = min_confidence;
         track.focal_px = PositiveOr0(focal_px, "focal_px");
         track.focal_35mm_mm = PositiveOr0(focal_35mm, "focal_35mm");
+        track.find_camera_motion = !still;
+        track.camera_path_out = TextOf(camera_path_out);
         track.stature_m = PositiveOr0(stature_m, "stature_m");
         track.prior = TextOf(prior), track.lifter = TextOf(lifter);
         track.detector = DetectorFrom(detector, pose_model, box_model, models);
@@ -187,15 +190,16 @@ void BindPeople(py::module_& module) {
       py::arg("person") = py::none(), py::arg("min_seconds") = 0.5, py::arg("fps") = py::none(),
       py::arg("min_confidence") = 0.0, py::arg("view") = "", py::arg("known") = ToString(KnownOfRig::kClocks),
       py::arg("same_lens") = false, py::arg("camera") = py::none(), py::arg("focal_px") = py::none(),
-      py::arg("focal_35mm") = py::none(), py::arg("body") = py::none(), py::arg("stature_m") = py::none(),
-      py::arg("prior") = py::none(), py::arg("lifter") = py::none(), py::arg("detector") = "heavy",
-      py::arg("pose_model") = py::none(), py::arg("box_model") = py::none(), py::arg("models") = py::none(),
-      py::arg("detect_rate") = py::none(), py::arg("mask") = true, py::arg("begin_s") = 0.0,
-      py::arg("end_s") = py::none(), py::arg("rotate") = 0, py::arg("captured_fps") = py::none(),
-      py::arg("hands") = py::none(), py::arg("solver") = ToString(TrackSequenceOptions().solver),
-      py::arg("threads") = 0, py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true,
-      py::arg("side_view") = false, py::arg("masks") = false, py::arg("coarse_masks") = false,
-      py::arg("report") = false, py::arg("progress") = py::none(), kRunDoc);
+      py::arg("focal_35mm") = py::none(), py::arg("still") = false, py::arg("camera_path_out") = py::none(),
+      py::arg("body") = py::none(), py::arg("stature_m") = py::none(), py::arg("prior") = py::none(),
+      py::arg("lifter") = py::none(), py::arg("detector") = "heavy", py::arg("pose_model") = py::none(),
+      py::arg("box_model") = py::none(), py::arg("models") = py::none(), py::arg("detect_rate") = py::none(),
+      py::arg("mask") = true, py::arg("begin_s") = 0.0, py::arg("end_s") = py::none(), py::arg("rotate") = 0,
+      py::arg("captured_fps") = py::none(), py::arg("hands") = py::none(),
+      py::arg("solver") = ToString(TrackSequenceOptions().solver), py::arg("threads") = 0,
+      py::arg("uncertainty") = true, py::arg("ground") = true, py::arg("overlay") = true, py::arg("side_view") = false,
+      py::arg("masks") = false, py::arg("coarse_masks") = false, py::arg("report") = false,
+      py::arg("progress") = py::none(), kRunDoc);
   module.def(
       "detect",
       [](const Path& video, std::optional<double> fps, const std::string& detector,

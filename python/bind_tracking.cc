@@ -46,6 +46,8 @@ The camera
   camera_model    "pinhole", "unknown-focal" (the focal length is estimated) or "weak"; None: pinhole where the camera
                   or focal_px is given, else unknown-focal
   image_size      (width, height), when nothing else gives it
+  still           the camera stands still: its motion is not looked for in the video
+  camera_path_out file for the path that is found in the video, JSON or COLMAP's images.txt
 What else is known
   body            Body, or a file; None: the built-in one; "hands": that with fingers
   stature_m       of the person; from it distances follow
@@ -148,15 +150,15 @@ void BindTracking(py::module_& module) {
          const std::string& view, int person, std::optional<double> fps, double min_confidence,
          const std::string& convention, const std::optional<CameraArgument>& camera, std::optional<double> focal_px,
          std::optional<double> focal_35mm, const std::optional<std::string>& camera_model,
-         std::optional<std::pair<int, int>> image_size, const std::optional<BodyArgument>& body,
-         std::optional<double> stature_m, const std::optional<Path>& init, double init_weight,
-         const std::optional<Path>& prior, const std::optional<Path>& lifter, std::optional<int> live_lag,
-         const std::string& solver, int threads, int max_iterations, bool estimate_shape, bool uncertainty, bool ground,
-         bool skip_unneeded, double rendered_weight, double velocity_weight, std::optional<double> straight_knees,
-         const std::string& detector, const std::optional<Path>& pose_model, const std::optional<Path>& box_model,
-         const std::optional<Path>& models, std::optional<double> detect_rate, bool mask, double begin_s,
-         std::optional<double> end_s, const TurnArgument& rotate, std::optional<double> captured_fps,
-         const std::optional<std::string>& hands, const py::object& progress) {
+         std::optional<std::pair<int, int>> image_size, bool still, const std::optional<Path>& camera_path_out,
+         const std::optional<BodyArgument>& body, std::optional<double> stature_m, const std::optional<Path>& init,
+         double init_weight, const std::optional<Path>& prior, const std::optional<Path>& lifter,
+         std::optional<int> live_lag, const std::string& solver, int threads, int max_iterations, bool estimate_shape,
+         bool uncertainty, bool ground, bool skip_unneeded, double rendered_weight, double velocity_weight,
+         std::optional<double> straight_knees, const std::string& detector, const std::optional<Path>& pose_model,
+         const std::optional<Path>& box_model, const std::optional<Path>& models, std::optional<double> detect_rate,
+         bool mask, double begin_s, std::optional<double> end_s, const TurnArgument& rotate,
+         std::optional<double> captured_fps, const std::optional<std::string>& hands, const py::object& progress) {
         TrackArguments arguments;
         TrackRequest& request = arguments.request;
         request.dense = TextOf(dense);
@@ -178,6 +180,8 @@ void BindTracking(py::module_& module) {
         BODYLOOM_CHECK(!image_size || (request.image_width > 0 && request.image_height > 0),
                        "image_size: expected pixels above 0, found (", request.image_width, ", ", request.image_height,
                        ")");
+        request.find_camera_motion = !still;
+        request.camera_path_out = TextOf(camera_path_out);
         request.stature_m = PositiveOr0(stature_m, "stature_m");
         request.init = TextOf(init);
         request.prior = TextOf(prior);
@@ -214,7 +218,8 @@ void BindTracking(py::module_& module) {
       py::arg("view") = "", py::arg("person") = 0, py::arg("fps") = py::none(), py::arg("min_confidence") = 0.0,
       py::arg("convention") = "", py::arg("camera") = py::none(), py::arg("focal_px") = py::none(),
       py::arg("focal_35mm") = py::none(), py::arg("camera_model") = py::none(), py::arg("image_size") = py::none(),
-      py::arg("body") = py::none(), py::arg("stature_m") = py::none(), py::arg("init") = py::none(),
+      py::arg("still") = false, py::arg("camera_path_out") = py::none(), py::arg("body") = py::none(),
+      py::arg("stature_m") = py::none(), py::arg("init") = py::none(),
       py::arg("init_weight") = defaults.solve.initialiser_weight, py::arg("prior") = py::none(),
       py::arg("lifter") = py::none(), py::arg("live_lag") = py::none(),
       py::arg("solver") = ToString(defaults.solve.solver), py::arg("threads") = defaults.solve.num_threads,

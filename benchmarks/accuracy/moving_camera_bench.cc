@@ -15,11 +15,14 @@
 ///   found       what is found from background points (tracking/camera_motion/camera_motion.h): with --background
 ///               points 3 to 9 m from the first camera, followed with 0.3 pixels of noise, of which 15 % move by
 ///               themselves; otherwise followed in the pixels of a rendered room (rendered_room.h), bodies masked,
-///               whose video --write keeps
+///               whose video --write keeps; the path of a camera that goes somewhere has no length, as for `scale`
 ///   none        nothing: it is taken to stand still
 /// Camera "turning" is the hand-held one without its translations.
-/// pa: PA-MPJPE of all joints, mm. w, wa, drift, slide: data_tools/evaluation/world_drift.h. ratio: scale found / true.
+/// pa: PA-MPJPE of all joints, mm. w, wa, drift, slide: data_tools/evaluation/world_drift.h. ratio: scale found / true,
+/// 0: the tracker found none. path: distance of the camera from where it was, root mean square after one rigid motion,
+/// in percent of its way.
 /// standing: GroundSummary::standing_speed_mps, of what the tracker itself sees of standing feet.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -76,8 +79,28 @@ Motion MotionNamed(const std::string& name, int frames) {
   return TakeFrames(motion, 0, std::min(frames, motion.num_frames()));
 }
 
-/// One row: the clip tracked with this path (or none).
-std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<CameraPose>* path, double scale_m) {
+Eigen::Matrix3Xd Centres(const std::vector<CameraPose>& path) {
+  Eigen::Matrix3Xd centres(3, Eigen::Index(path.size()));
+  for (size_t t = 0; t < path.size(); ++t) centres.col(Eigen::Index(t)) = CentreOf(path[t]);
+  return centres;
+}
+
+/// Distance of the camera's places from the true ones, root mean square after one rigid motion, in percent of the true
+/// path's length.
+double PathError(const std::vector<CameraPose>& found, const std::vector<CameraPose>& truth) {
+  if (found.empty() || truth.empty()) return kNotMeasured;
+  const Eigen::Matrix3Xd places = Centres(found), true_places = Centres(truth);
+  const Eigen::Matrix4d moved = Eigen::umeyama(places, true_places, false);
+  const Eigen::Matrix3Xd off =
+      ((moved.topLeftCorner<3, 3>() * places).colwise() + moved.col(3).head<3>()) - true_places;
+  const auto steps = true_places.cols() - 1;
+  const double length = (true_places.rightCols(steps) - true_places.leftCols(steps)).colwise().norm().sum();
+  return 100 * std::sqrt(off.colwise().squaredNorm().mean()) / length;
+}
+
+/// One row: the clip tracked with this path (or none). `unit_m`: metres a unit of a path of unknown scale.
+std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<CameraPose>* path, double scale_m,
+                                    double unit_m) {
   TrackSequenceInput input;
   input.body = &BuiltinBody();
   input.prior = &BuiltinPosePrior();
@@ -89,7 +112,7 @@ std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<Cam
   TrackSequenceOptions options;
   options.estimate_uncertainty = false;
   const TrackSequenceResult result = FitClip(input, options);
-  if (!result.summary.IsUsable()) return std::vector<double>(9, kNotMeasured);
+  if (!result.summary.IsUsable()) return std::vector<double>(10, kNotMeasured);
   const WorldDrift drift = MeasureWorldDrift(result.track, clip.truth, BuiltinBody());
   double seconds = 0;
   for (const auto& [stage, stage_seconds] : result.summary.seconds) seconds += stage_seconds;
@@ -98,7 +121,8 @@ std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<Cam
           1e3 * drift.wa_mpjpe_m,
           100 * drift.root_drift,
           drift.foot_slide_mps,
-          scale_m == 0 ? result.summary.camera_path.scale_m / kUnit : kNotMeasured,
+          scale_m == 0 ? result.summary.camera_path.scale_m / unit_m : kNotMeasured,
+          PathError(result.track.camera_from_scene, clip.truth.camera_from_scene),
           result.summary.ground.standing_speed_mps,
           result.summary.ground.up_spread_deg,
           seconds};
@@ -144,8 +168,12 @@ BackgroundTracks RoomPoints(const SynthClip& clip, RoomKind kind, uint64_t seed,
   return tracker.Finish();
 }
 
-/// The path found from points of the background; empty if the camera seems to stand or to go somewhere.
-std::vector<CameraPose> FoundPath(const SynthClip& clip, const BackgroundTracks& background) {
+/// The path found from points of the background, empty if none is; metres a unit, 0: it turns in place.
+struct FoundPath {
+  std::vector<CameraPose> poses;
+  double unit_m = 0;
+};
+FoundPath FindPath(const SynthClip& clip, const BackgroundTracks& background) {
   const Camera& camera = clip.truth.camera;
   CameraMotionOptions options;
   options.focal = {.log_mean = std::log(camera.fx)};
@@ -153,7 +181,12 @@ std::vector<CameraPose> FoundPath(const SynthClip& clip, const BackgroundTracks&
   const CameraMotion motion = FindCameraMotion(background, options);
   std::fprintf(stderr, "%s: %s\n", ToString(motion.kind).c_str(), motion.why.c_str());
   if (!motion.has_path() || motion.zoom > 1) return {};
-  return SampleCameraPath(motion.path, clip.truth.motion.timestamps).camera_from_scene;
+  FoundPath found{SampleCameraPath(motion.path, clip.truth.motion.timestamps).camera_from_scene, 0};
+  const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
+  if (motion.kind == CameraMotionKind::kMoving && !path.empty()) {
+    found.unit_m = Eigen::umeyama(Centres(found.poses), Centres(path), true).col(0).head<3>().norm();
+  }
+  return found;
 }
 
 void Run(const BenchArguments& arguments, const std::string& command) {
@@ -161,9 +194,8 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   report.title = "A camera that moves, synthetic detections";
   report.command = command;
   report.label_columns = {"motion", "seed"};
-  report.value_columns = {"pa_mpjpe_mm",   "w_mpjpe_mm",    "wa_mpjpe_mm",
-                          "drift_percent", "slide_mps",     "ratio",
-                          "standing",      "up_spread_deg", "s"};
+  report.value_columns = {"pa_mpjpe_mm", "w_mpjpe_mm",   "wa_mpjpe_mm", "drift_percent", "slide_mps",
+                          "ratio",       "path_percent", "standing",    "up_spread_deg", "s"};
   for (const std::string& camera : arguments.List("cameras")) {
     for (const std::string& name : arguments.List("motions")) {
       const Motion motion = MotionNamed(name, arguments.Integer("frames"));
@@ -176,9 +208,10 @@ void Run(const BenchArguments& arguments, const std::string& command) {
         if (turns) options.camera_path.shake_m = 0;
         const SynthClip clip = MakeSynthClip(BuiltinBody(), motion, options);
         const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
-        const auto add = [&](const std::string& told, const std::vector<CameraPose>* given, double scale_m) {
+        const auto add = [&](const std::string& told, const std::vector<CameraPose>* given, double scale_m,
+                             double unit_m = kUnit) {
           report.rows.push_back(
-              {camera + ", " + told, {name, std::to_string(seed)}, TrackAndMeasure(clip, given, scale_m)});
+              {camera + ", " + told, {name, std::to_string(seed)}, TrackAndMeasure(clip, given, scale_m, unit_m)});
           std::fprintf(stderr, "%s %s %d %s\n", camera.c_str(), name.c_str(), seed, told.c_str());
         };
         add("none", nullptr, 1);
@@ -189,10 +222,10 @@ void Run(const BenchArguments& arguments, const std::string& command) {
           video = arguments.Text("write") + "/" + room + "_" + camera + "_" +
                   std::filesystem::path(name).stem().string() + "_" + std::to_string(seed) + ".mp4";
         }
-        const std::vector<CameraPose> found =
-            FoundPath(clip, room == "points" ? BackgroundPoints(clip, options.seed)
-                                             : RoomPoints(clip, RoomKindFromString(room), options.seed, video));
-        add("found", found.empty() ? nullptr : &found, 1);
+        const FoundPath found =
+            FindPath(clip, room == "points" ? BackgroundPoints(clip, options.seed)
+                                            : RoomPoints(clip, RoomKindFromString(room), options.seed, video));
+        add("found", found.poses.empty() ? nullptr : &found.poses, found.unit_m > 0 ? 0 : 1, found.unit_m);
         if (path.empty()) continue;
         add("path", &path, 1);
         const std::vector<CameraPose> unit = ScaledPath(path, 1 / kUnit), turned = ScaledPath(path, 0),

@@ -60,6 +60,7 @@ RecordedCameraPath FromColmap(const std::string& file) {
   ColmapModel model = ReadColmapModel(file);
   RecordedCameraPath path;
   path.is_metric = false;
+  path.is_colmap = true;
   TakeColmapCamera(model, &path);
   std::sort(model.images.begin(), model.images.end(),
             [](const ColmapImage& a, const ColmapImage& b) { return a.name < b.name; });
@@ -99,6 +100,7 @@ RecordedCameraPath PathFromJson(const JsonNode& document) {
     path.fps = document.At("fps").Number();
     if (!(path.fps > 0 && path.fps <= 1e5)) document.At("fps").Fail("frames a second");
   }
+  if (document.Has("metric")) path.is_metric = document.At("metric").Flag();
   const JsonNode frames = document.At("frames");
   if (!frames.is_array() || frames.size() == 0) frames.Fail("a list of frames");
   const bool has_times = frames.At(size_t{0}).Has("time");
@@ -147,7 +149,7 @@ RecordedCameraPath LoadCameraPath(const std::string& path) {
   return CameraPathFromText(ReadFileBytes(path, size_t{256} << 20), path);
 }
 
-void WriteCameraPath(const std::string& path, const CameraPath& camera_path) {
+void WriteCameraPath(const std::string& path, const CameraPath& camera_path, bool is_metric) {
   nlohmann::ordered_json frames = nlohmann::ordered_json::array();
   for (size_t i = 0; i < camera_path.poses.size(); ++i) {
     const CameraPose& pose = camera_path.poses[i];
@@ -160,7 +162,10 @@ void WriteCameraPath(const std::string& path, const CameraPath& camera_path) {
     frames.push_back(
         {{"time", camera_path.timestamps[i]}, {"rotation", rotation}, {"translation", {t[0], t[1], t[2]}}});
   }
-  WriteFileAtomically(path, nlohmann::ordered_json{{"camera_path", kPathVersion}, {"frames", frames}}.dump(1) + "\n");
+  nlohmann::ordered_json document = {{"camera_path", kPathVersion}};
+  if (!is_metric) document["metric"] = false;
+  document["frames"] = frames;
+  WriteFileAtomically(path, document.dump(1) + "\n");
 }
 
 CameraPath CameraPathOnClock(const RecordedCameraPath& recorded, std::span<const double> clip_seconds,
@@ -171,7 +176,7 @@ CameraPath CameraPathOnClock(const RecordedCameraPath& recorded, std::span<const
     path.timestamps = recorded.seconds;
     return path;
   }
-  const bool counts_from_one = !recorded.is_metric && !recorded.by_sorted_name && recorded.frames.front() > 0;
+  const bool counts_from_one = recorded.is_colmap && !recorded.by_sorted_name && recorded.frames.front() > 0;
   const int first = place.first >= 0 ? place.first : counts_from_one ? 1 : 0;
   const double fps = place.fps > 0 ? place.fps : recorded.fps;
   for (size_t i = 0; i < recorded.frames.size(); ++i) {

@@ -19,6 +19,8 @@ struct BackgroundTracks {
   struct Anchor {
     int frame = 0;
     std::vector<Eigen::Vector2f> pixels;  ///< in the anchor's own frame
+    /// Names of the points, distinct; a point of an earlier anchor that is followed on keeps its name.
+    std::vector<int> points;
     /// In rising order of frames, all later than the anchor. The next anchor's frame is the last one, unless the
     /// points were lost before it. Sights of anchors before (loop closures) follow those of the frames in between.
     std::vector<Sight> sights;

@@ -50,7 +50,12 @@ std::string ToText(const CameraPathReport& report, const CameraPathSummary& solv
                       report.by_sorted_name ? ", counted by their sorted names" : "");
   if (report.interpolated > 0) text += Concatenate("; ", report.interpolated, " frames between them");
   if (report.beyond > 0) text += Concatenate("; ", report.beyond, " frames beyond them, taken to stand still");
-  if (report.found) return text + Concatenate(", within ", Fixed(report.sigma_deg, 3), " deg; it turns in place\n");
+  if (report.found) text += ", within " + Fixed(report.sigma_deg, 3) + " deg";
+  if (report.found && !report.goes) return text + "; it turns in place\n";
+  if (report.found) {
+    text += Concatenate(" and ", Fixed(100 * report.sigma_place, 1), " % of its way; ", report.background_points,
+                        " points in space");
+  }
   text += "\nscale    ";
   if (!solved.estimated) return text + Fixed(solved.scale_m, 4) + " m a unit of the path, as given\n";
   if (solved.scale_m == 0) {
@@ -73,7 +78,10 @@ nlohmann::ordered_json ToJson(const CameraPathReport& report, const CameraPathSu
           {"found", report.found},
           {"motion", report.motion},
           {"turned_deg", report.turned_deg},
-          {"rotation_sigma_deg", report.sigma_deg}};
+          {"rotation_sigma_deg", report.sigma_deg},
+          {"goes_from_place_to_place", report.goes},
+          {"place_sigma", report.sigma_place},
+          {"background_points", report.background_points}};
 }
 
 std::string MovingCameraWarning(const CameraPathReport& report, const CameraPathSummary& solved,

@@ -23,11 +23,14 @@ struct CameraPathReport {
   bool by_sorted_name = false;  ///< images are matched by sorted name, as their names have no numbers
 
   // Of the search for motion in the video (found_camera_motion.h).
-  std::string motion;     ///< kind and evidence; empty: it was not looked for
-  bool is_still = false;  ///< the background rests
-  bool found = false;     ///< the path is that of the search: a camera that turns in place
-  double turned_deg = 0;  ///< largest rotation of a path that was found
-  double sigma_deg = 0;   ///< largest standard deviation of its rotations, about an axis
+  std::string motion;         ///< kind and evidence; empty: it was not looked for
+  bool is_still = false;      ///< the background rests
+  bool found = false;         ///< the path is that of the search
+  bool goes = false;          ///< it goes from place to place; otherwise it turns in place
+  double turned_deg = 0;      ///< largest rotation of a path that was found
+  double sigma_deg = 0;       ///< largest standard deviation of its rotations, about an axis
+  double sigma_place = 0;     ///< median standard deviation of its places, as a share of the largest distance of two
+  int background_points = 0;  ///< placed in space by the search
 
   [[nodiscard]] bool any() const { return found || !file.empty(); }
 };

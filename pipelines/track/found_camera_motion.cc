@@ -3,12 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
+#include "data_tools/export/camera_writers.h"
+#include "data_tools/formats/atomic_file.h"
 #include "data_tools/observations/load_camera_path.h"
+#include "data_tools/video/image_file.h"
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
+#include "geometry/base/percentile.h"
+#include "geometry/base/units.h"
 #include "pipelines/detect/detect_people.h"
 #include "pipelines/video/track_video.h"
 #include "tracking/camera_motion/camera_motion.h"
@@ -17,7 +23,7 @@
 namespace bodyloom {
 namespace {
 
-/// Least σ of log f taken from a turning camera: a lens' distortion and the picture's centre are not modelled.
+/// Least σ of log f taken from the background: a lens' distortion and the picture's centre are not modelled.
 constexpr double kLeastFocalSigma = 0.02;
 
 /// Pixels of the video a pixel of the camera; 0: the video is not a scaled copy of the camera's image.
@@ -28,6 +34,26 @@ double VideoScale(const SceneRequest& request, const SceneInputs& scene) {
   } catch (const std::runtime_error&) {
     return 0;
   }
+}
+
+/// COLMAP's text model: the images' names have the numbers of the video's frames, and the camera is the video's.
+void WriteColmapPath(const std::string& images_file, const BackgroundTracks& background, const CameraMotion& motion) {
+  const Camera camera = MakePinhole(background.width, background.height, std::exp(motion.log_focal));
+  std::string images = ColmapImagesHeading(), points = ColmapPointsHeading();
+  for (size_t i = 0; i < motion.path.poses.size(); ++i) {
+    const auto at =
+        std::lower_bound(background.timestamps.begin(), background.timestamps.end(), motion.path.timestamps[i]);
+    const auto frame = static_cast<int>(at - background.timestamps.begin());
+    images += ColmapImageLine(i + 1, motion.path.poses[i], 1, FrameFile("", frame));
+  }
+  for (size_t i = 0; i < motion.points.size(); ++i) {
+    const Eigen::Vector3d& at = motion.points[i];
+    points += Concatenate(i + 1, " ", at.x(), " ", at.y(), " ", at.z(), " 128 128 128 0\n");
+  }
+  const std::filesystem::path folder = std::filesystem::path(images_file).parent_path();
+  WriteFileAtomically((folder / "cameras.txt").string(), ColmapCamerasHeading() + ColmapCameraLine(1, camera));
+  WriteFileAtomically((folder / "points3D.txt").string(), points);
+  WriteFileAtomically(images_file, images);
 }
 
 }  // namespace
@@ -80,23 +106,31 @@ void UseCameraMotion(const TrackSettings& request, const BackgroundTracks& backg
   report->motion = ToString(motion.kind) + ": " + motion.why;
   report->is_still = motion.kind == CameraMotionKind::kStill;
   const bool zooms = motion.zoom > 1;
-  if (motion.kind == CameraMotionKind::kMoving || zooms) {
+  if ((motion.kind == CameraMotionKind::kMoving && !motion.has_path()) || zooms) {
     callbacks.Message("the camera " + std::string(zooms ? "zooms" : "moves") + ": " + motion.why +
                       "; give its path with --camera-path, without it places and speeds are the camera's too");
   }
   if (!motion.has_path()) return;
-  if (!request.camera_path_out.empty()) WriteCameraPath(request.camera_path_out, motion.path);
-  if (zooms) return;
+  const bool goes = motion.kind == CameraMotionKind::kMoving;
   RecordedCameraPath path;
   path.poses = motion.path.poses;
   path.seconds = motion.path.timestamps;
+  path.is_metric = !goes;
+  if (LowerExtension(request.camera_path_out) == ".txt") {
+    WriteColmapPath(request.camera_path_out, background, motion);
+  } else if (!request.camera_path_out.empty()) {
+    WriteCameraPath(request.camera_path_out, motion.path, path.is_metric);
+  }
+  if (zooms) return;
   scene->camera_path = std::move(path);
   report->found = true;
+  report->goes = goes;
   report->turned_deg = motion.turned_deg;
-  std::vector<double> sigmas = motion.sigma_rad;
-  report->sigma_deg = sigmas.empty() ? 0 : *std::max_element(sigmas.begin(), sigmas.end()) * 180 / M_PI;
+  report->sigma_deg = *std::max_element(motion.sigma_rad.begin(), motion.sigma_rad.end()) / kDegree;
+  report->background_points = static_cast<int>(motion.points.size());
+  if (goes) report->sigma_place = Percentile(motion.sigma_place, 50) / motion.extent;
   if (scene->camera_knowledge == CameraKnowledge::kUnknownFocal) {
-    scene->focal_of_turning =
+    scene->focal_of_motion =
         FocalPrior{.log_mean = motion.log_focal, .log_sigma = std::max(kLeastFocalSigma, motion.log_focal_sigma)};
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Finds how the camera of a job's video moved, and takes the path of one that turned in place for the tracks.
+/// Finds how the camera of a job's video moved, and takes the path of one that turned or went somewhere for the tracks.
 #pragma once
 
 #include <string>
@@ -22,9 +22,10 @@ std::string WhyNoCameraMotion(const SceneRequest& request);
 BackgroundTracks BackgroundOfVideo(const TrackRequest& request, const KeypointSequence* keypoints,
                                    const SceneInputs& scene);
 
-/// Finds the motion. A camera that turns without zoom gives `scene` a camera path and, where its focal length is not
-/// known, a prior from it; the path is written to request.camera_path_out, if given. `report`: what was found. Says a
-/// warning when the camera moves in another way.
+/// Finds the motion. A camera that turns without zoom, or whose places are found, gives `scene` a camera path, of
+/// places in a unit that is not known, and, where its focal length is not known, a prior from it; the path is written
+/// to request.camera_path_out, if given: as COLMAP's images.txt with cameras.txt and points3D.txt beside it if its name
+/// ends in .txt, otherwise as JSON. `report`: what was found. Says a warning when the camera moves in another way.
 void UseCameraMotion(const TrackSettings& request, const BackgroundTracks& background,
                      const PipelineCallbacks& callbacks, SceneInputs* scene, CameraPathReport* report);
 

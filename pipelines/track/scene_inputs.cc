@@ -86,7 +86,7 @@ TrackSequenceInput SceneInputs::ForTracker() const {
     input.focal_prior =
         FocalPrior::ForLens(camera.camera.width, camera.camera.height, focal_35mm_mm, focal_35mm_log_sigma);
   }
-  if (focal_of_turning) input.focal_prior = *focal_of_turning;
+  if (focal_of_motion) input.focal_prior = *focal_of_motion;
   return input;
 }
 

@@ -38,8 +38,9 @@ struct SceneInputs {
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
   double focal_35mm_mm = 0;         ///< of the lens, from the request or the video's metadata; 0: unknown
   double focal_35mm_log_sigma = 0;  ///< standard deviation of log(focal length)
-  /// Of a camera that turns, from its background (found_camera_motion.h); takes the place of the lens' prior.
-  std::optional<FocalPrior> focal_of_turning;
+  /// Of a camera that turns or goes somewhere, from its background (found_camera_motion.h); takes the place of the
+  /// lens' prior.
+  std::optional<FocalPrior> focal_of_motion;
   VideoInfo video;         ///< of the turned video; width 0: there is none
   VideoPlayback playback;  ///< of the video
   /// Rate of the video's frames on the track's clock; 0: unknown.

@@ -34,7 +34,7 @@ struct SceneRequest {
   int camera_path_first = -1;      ///< index of the clip's first frame in the path (PlaceInTime)
   double camera_path_fps = 0;      ///< frame rate of the path's numbered frames; 0: the clip's
   bool find_camera_motion = true;  ///< without a path: look whether the video's camera moved
-  std::string camera_path_out;     ///< the path found, .json; empty: not written
+  std::string camera_path_out;     ///< the path found, .json or COLMAP's images.txt; empty: not written
   bool use_lines = true;  ///< the picture's straight lines tell the vertical (tracking/room/picture_vertical.h)
   int image_width = 0, image_height = 0;  ///< used if neither camera, video nor detections give it
 };

@@ -59,7 +59,8 @@ LIBRARIES = {room for room in ROOMS if not room.startswith(PROGRAMS)}
 THIRD_PARTY = [
     (r"ceres/", {"tracking", "render/lighting", "examples"} | TEST_CODE, True),
     (r"opencv2/dnn", {"tracking/detection"} | TEST_CODE, False),
-    (r"opencv2/", {"render", "render/lighting", "render/photo_avatar", "data_tools", "tracking/detection", "data_tools/synthesis",
+    (r"opencv2/calib3d", {"tracking/camera_motion"} | TEST_CODE, False),
+    (r"opencv2/(?!calib3d)", {"render", "render/lighting", "render/photo_avatar", "data_tools", "tracking/detection", "data_tools/synthesis",
                    "data_tools/evaluation", "pipelines", "pipelines/neural"} | TEST_CODE, True),
     (r"(torch|ATen|c10|caffe2)/", {"neural", "pipelines/neural"} | TEST_CODE, True),
     (r"CGAL/", {"apps/cgal"} | TEST_CODE, False),

@@ -14,6 +14,7 @@
 #include "geometry/base/percentile.h"
 #include "geometry/base/units.h"
 #include "geometry/math/rotation.h"
+#include "tracking/camera_motion/background_structure.h"
 #include "tracking/camera_motion/turning_camera.h"
 
 namespace bodyloom {
@@ -28,6 +29,7 @@ constexpr double kMaxBrokenShare = 0.3;
 constexpr double kMovedPx = 1, kRestsPx = 0.6;  ///< small pixels
 constexpr double kMovedShare = 0.6, kRestsShare = 0.25, kTogether = 0.5;
 constexpr double kMinExplained = 0.7, kMaxZoom = 1.04;
+constexpr double kMinInSpace = 0.65, kLeastParallax = 0.3 * kDegree, kMostOff = 1.0 / 3;
 constexpr double kMaxGapS = 1;  ///< CameraPathLimits::max_gap_s
 
 void Check(const BackgroundTracks& tracks) {
@@ -36,6 +38,8 @@ void Check(const BackgroundTracks& tracks) {
   for (const BackgroundTracks::Anchor& anchor : tracks.anchors) {
     BODYLOOM_CHECK(anchor.frame > last && anchor.frame < frames, "background points: anchor of frame ", anchor.frame,
                    " after ", last, " in a clip of ", frames);
+    BODYLOOM_CHECK(anchor.points.size() == anchor.pixels.size(), "background points: ", anchor.points.size(),
+                   " names, expected ", anchor.pixels.size());
     last = anchor.frame;
     for (const BackgroundTracks::Sight& sight : anchor.sights) {
       BODYLOOM_CHECK(sight.frame > anchor.frame && sight.frame < frames, "background points: frame ", sight.frame,
@@ -243,61 +247,119 @@ ModelChoice Choose(const std::vector<MovedSight>& moved, const BackgroundTracks&
   return choice;
 }
 
+/// A path found, of frames with a sight of the background.
+struct PlacedFrames {
+  std::vector<int> frames;
+  std::vector<CameraPose> poses;
+  std::vector<double> sigma_rad, sigma_place;  ///< the latter empty for a camera that turns
+};
+
 /// Longest time between two frames of the path, or from it to the clip's ends.
-double LongestGap(const BackgroundTracks& tracks, const TurningCamera& camera) {
+double LongestGap(const BackgroundTracks& tracks, const std::vector<int>& frames) {
   double last = tracks.timestamps.front(), gap = 0;
-  for (const int frame : camera.frames) {
+  for (const int frame : frames) {
     gap = std::max(gap, tracks.timestamps[size_t(frame)] - last);
     last = tracks.timestamps[size_t(frame)];
   }
   return std::max(gap, tracks.timestamps.back() - last);
 }
 
-/// rad/s between frames with a sight.
-double LargestSpeed(const BackgroundTracks& tracks, const TurningCamera& camera) {
+/// Largest change a second between frames with a sight, of an angle or a distance of their poses.
+template <typename Way>
+double LargestSpeed(const BackgroundTracks& tracks, const PlacedFrames& placed, const Way& way) {
   double largest = 0;
-  for (size_t i = 1; i < camera.frames.size(); ++i) {
+  for (size_t i = 1; i < placed.frames.size(); ++i) {
     const double seconds =
-        tracks.timestamps[size_t(camera.frames[i])] - tracks.timestamps[size_t(camera.frames[i - 1])];
-    largest =
-        std::max(largest, RotationAngleBetween(camera.camera_from_first[i - 1], camera.camera_from_first[i]) / seconds);
+        tracks.timestamps[size_t(placed.frames[i])] - tracks.timestamps[size_t(placed.frames[i - 1])];
+    largest = std::max(largest, way(placed.poses[i - 1], placed.poses[i]) / seconds);
   }
   return largest;
 }
 
-void TakePath(const BackgroundTracks& tracks, const TurningCamera& camera, CameraMotion* motion) {
-  for (size_t i = 0; i < camera.frames.size(); ++i) {
-    motion->path.timestamps.push_back(tracks.timestamps[size_t(camera.frames[i])]);
-    motion->path.poses.push_back({camera.camera_from_first[i], Vector3d::Zero()});
-  }
-  motion->sigma_rad = camera.sigma_rad;
+void TakePath(const BackgroundTracks& tracks, const PlacedFrames& placed, CameraMotion* motion) {
+  CameraPath& path = motion->path;
+  for (const int frame : placed.frames) path.timestamps.push_back(tracks.timestamps[size_t(frame)]);
+  path.poses = placed.poses;
+  motion->sigma_rad = placed.sigma_rad;
+  motion->sigma_place = placed.sigma_place;
   // Frames before the first and after the last with a sight are held; σ: half of the way at the path's largest speed.
-  const double speed = LargestSpeed(tracks, camera);
-  if (motion->path.timestamps.front() > tracks.timestamps.front()) {
-    motion->path.timestamps.insert(motion->path.timestamps.begin(), tracks.timestamps.front());
-    motion->path.poses.insert(motion->path.poses.begin(), motion->path.poses.front());
-    const double held_s = motion->path.timestamps[1] - motion->path.timestamps[0];
-    motion->sigma_rad.insert(motion->sigma_rad.begin(), std::hypot(motion->sigma_rad.front(), speed * held_s / 2));
+  const double turns = LargestSpeed(tracks, placed, [](const CameraPose& a, const CameraPose& b) {
+    return RotationAngleBetween(a.camera_from_world_rotation, b.camera_from_world_rotation);
+  });
+  const double goes = LargestSpeed(
+      tracks, placed, [](const CameraPose& a, const CameraPose& b) { return (CentreOf(a) - CentreOf(b)).norm(); });
+  const auto hold = [&](std::vector<double>* sigmas, bool at_end, double way) {
+    if (sigmas->empty()) return;
+    const double sigma = std::hypot(at_end ? sigmas->back() : sigmas->front(), way);
+    sigmas->insert(at_end ? sigmas->end() : sigmas->begin(), sigma);
+  };
+  if (path.timestamps.front() > tracks.timestamps.front()) {
+    path.timestamps.insert(path.timestamps.begin(), tracks.timestamps.front());
+    path.poses.insert(path.poses.begin(), CameraPose(path.poses.front()));
+    const double held_s = path.timestamps[1] - path.timestamps[0];
+    hold(&motion->sigma_rad, false, turns * held_s / 2);
+    hold(&motion->sigma_place, false, goes * held_s / 2);
   }
-  if (motion->path.timestamps.back() < tracks.timestamps.back()) {
-    const double held_s = tracks.timestamps.back() - motion->path.timestamps.back();
-    motion->path.timestamps.push_back(tracks.timestamps.back());
-    motion->path.poses.push_back(motion->path.poses.back());
-    motion->sigma_rad.push_back(std::hypot(motion->sigma_rad.back(), speed * held_s / 2));
+  if (path.timestamps.back() < tracks.timestamps.back()) {
+    const double held_s = tracks.timestamps.back() - path.timestamps.back();
+    path.timestamps.push_back(tracks.timestamps.back());
+    path.poses.push_back(CameraPose(path.poses.back()));
+    hold(&motion->sigma_rad, true, turns * held_s / 2);
+    hold(&motion->sigma_place, true, goes * held_s / 2);
   }
-  motion->log_focal = camera.log_focal;
-  motion->log_focal_sigma = camera.log_focal_sigma;
 }
 
-double TurnedDeg(const TurningCamera& camera) {
+double TurnedDeg(const std::vector<CameraPose>& poses) {
   double most = 0;
-  for (const Matrix3d& rotation : camera.camera_from_first) {
-    most = std::max(most, RotationAngleBetween(camera.camera_from_first.front(), rotation));
+  for (const CameraPose& pose : poses) {
+    most =
+        std::max(most, RotationAngleBetween(poses.front().camera_from_world_rotation, pose.camera_from_world_rotation));
   }
   return most / kDegree;
 }
 
+PlacedFrames PlacedBy(const TurningCamera& camera) {
+  PlacedFrames placed{camera.frames, {}, camera.sigma_rad, {}};
+  for (const Matrix3d& rotation : camera.camera_from_first) placed.poses.push_back({rotation, Vector3d::Zero()});
+  return placed;
+}
+
 double Tenths(double value) { return std::round(10 * value) / 10; }
+double Percent(double share) { return std::floor(100 * share); }
+
+/// The path of a camera that goes from place to place, if the background's structure explains what is seen; the
+/// evidence, or why there is no path, is added to motion.why.
+void TakeStructure(const BackgroundTracks& tracks, const CameraMotionOptions& options, CameraMotion* motion) {
+  const BackgroundStructure structure = ReconstructBackground(
+      tracks, {.focal = options.focal, .focal_known = options.focal_known, .num_threads = options.num_threads});
+  if (!structure.solved) {
+    motion->why += "; no path: " + structure.why;
+    return;
+  }
+  motion->why +=
+      Concatenate("; ", structure.points.size(), " points in space explain ", Percent(structure.explained), " %");
+  const double off = Percentile(structure.sigma_place, 50);
+  if (structure.explained < kMinInSpace || structure.points.size() < size_t(kFewestPoints)) return;
+  if (structure.parallax < kLeastParallax) {
+    motion->why += ", with too little parallax for a path";
+    return;
+  }
+  if (off > kMostOff * structure.extent) {
+    motion->why +=
+        Concatenate(", its place within ", Percent(off / structure.extent), " % of its way, too little for a path");
+    return;
+  }
+  if (const double gap = LongestGap(tracks, structure.frames); gap > kMaxGapS) {
+    motion->why += Concatenate(", and are not seen for ", Tenths(gap), " s");
+    return;
+  }
+  motion->turned_deg = TurnedDeg(structure.camera_from_first);
+  motion->extent = structure.extent;
+  motion->points = structure.points;
+  motion->log_focal = structure.log_focal;
+  motion->log_focal_sigma = structure.log_focal_sigma;
+  TakePath(tracks, {structure.frames, structure.camera_from_first, structure.sigma_rad, structure.sigma_place}, motion);
+}
 
 }  // namespace
 
@@ -377,22 +439,26 @@ CameraMotion FindCameraMotion(const BackgroundTracks& tracks, const CameraMotion
     motion.why = shift + "; no rotations explain it";
     return motion;
   }
+  const PlacedFrames placed = PlacedBy(camera);
   const ModelChoice choice = Choose(moved, tracks, camera);
-  const double explained = std::floor(100 * camera.explained);
-  motion.turned_deg = TurnedDeg(camera);
+  motion.turned_deg = TurnedDeg(placed.poses);
   if (camera.explained < kMinExplained || choice.epipolar < choice.rotation) {
-    motion.why = Concatenate(shift, "; rotations explain ", explained, " % of the points");
+    motion.zoom = 1;
+    motion.why = Concatenate(shift, "; rotations explain ", Percent(camera.explained), " % of the points");
+    TakeStructure(tracks, options, &motion);
     return motion;
   }
-  if (const double gap = LongestGap(tracks, camera); gap > kMaxGapS) {
+  if (const double gap = LongestGap(tracks, placed.frames); gap > kMaxGapS) {
     motion.why = Concatenate(shift, ", and is not seen for ", Tenths(gap), " s");
     return motion;
   }
   motion.kind = CameraMotionKind::kTurning;
-  motion.why =
-      Concatenate(shift, "; rotations explain ", explained, " % of the points, up to ", Tenths(motion.turned_deg), "°");
+  motion.why = Concatenate(shift, "; rotations explain ", Percent(camera.explained), " % of the points, up to ",
+                           Tenths(motion.turned_deg), "°");
   if (motion.zoom > 1) motion.why += Concatenate(", zoomed by ", std::round(100 * motion.zoom) / 100);
-  TakePath(tracks, camera, &motion);
+  TakePath(tracks, placed, &motion);
+  motion.log_focal = camera.log_focal;
+  motion.log_focal_sigma = camera.log_focal_sigma;
   return motion;
 }
 

@@ -12,8 +12,10 @@
 /// Torr's criterion (GRIC, "An assessment of information criteria for motion model selection", 1997), which counts
 /// what its parameters may explain by chance:
 ///   Σ min(e²/σ², 2 (4 − d)) + n d log 4 + k log 4n   d = 2, k = 3: a rotation;  d = 3, k = 7: an epipolar geometry
-/// *Moving*: anything else that moves. *Unknown*: fewer than 16 points of background in half of the sights
-/// or, of what moves, in the mean, or three anchors in ten begin after a loss.
+/// *Moving*: anything else that moves. Its path is that of background_structure.h where that explains a share of 0.65
+/// of the points seen in three key frames or more within 1.5 small pixels, under a median angle of 0.3° at least, with
+/// centres whose deviation (median) is at most a third of the path's extent. *Unknown*: fewer than 16 points of
+/// background in half of the sights or, of what moves, in the mean, or three anchors in ten begin after a loss.
 #pragma once
 
 #include <string>
@@ -42,12 +44,17 @@ struct CameraMotionOptions {
 
 struct CameraMotion {
   CameraMotionKind kind = CameraMotionKind::kUnknown;
-  std::string why;                ///< the evidence
-  double shift_px = 0;            ///< median way of the background from its anchor's frame, the largest over the clip
-  CameraPath path;                ///< of a turning camera: rotations, translations 0; times of the frames looked at
-  std::vector<double> sigma_rad;  ///< of each pose, standard deviation about an axis
-  double turned_deg = 0;          ///< largest rotation from the first frame
-  double log_focal = 0, log_focal_sigma = 0;  ///< of a turning camera; σ 0: it was known
+  std::string why;      ///< the evidence
+  double shift_px = 0;  ///< median way of the background from its anchor's frame, the largest over the clip
+  /// Times of the frames looked at. Of a turning camera translations are 0, of a moving one in units: 1 is the median
+  /// distance of the points from the camera.
+  CameraPath path;
+  std::vector<double> sigma_rad;        ///< of each pose, standard deviation about an axis
+  std::vector<double> sigma_place;      ///< of a moving camera: of each centre along an axis, units
+  double turned_deg = 0;                ///< largest rotation from the first frame
+  double extent = 0;                    ///< of a moving camera: largest distance from the first frame's place, units
+  std::vector<Eigen::Vector3d> points;  ///< of a moving camera: the background in the first frame's axes, units
+  double log_focal = 0, log_focal_sigma = 0;  ///< of a path that is found; σ 0: it was known
   double zoom = 1;                            ///< largest over smallest focal length
 
   [[nodiscard]] bool has_path() const { return !path.poses.empty(); }

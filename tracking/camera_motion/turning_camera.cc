@@ -272,21 +272,13 @@ bool TurnedPointCost::Evaluate(double const* const* parameters, double* residual
   return true;
 }
 
+bool FocalPriorCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  residuals[0] = (parameters[0][0] - prior_.log_mean) / prior_.log_sigma;
+  if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = 1 / prior_.log_sigma;
+  return true;
+}
+
 namespace {
-
-/// (log f − m) / s.
-class FocalPriorCost : public ceres::SizedCostFunction<1, 1> {
- public:
-  explicit FocalPriorCost(const FocalPrior& prior) : prior_(prior) {}
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    residuals[0] = (parameters[0][0] - prior_.log_mean) / prior_.log_sigma;
-    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = 1 / prior_.log_sigma;
-    return true;
-  }
-
- private:
-  FocalPrior prior_;
-};
 
 /// The solve of a clip.
 class TurningSolve {

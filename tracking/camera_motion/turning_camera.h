@@ -35,6 +35,16 @@ class TurnedPointCost : public ceres::SizedCostFunction<2, 3, 3, 1, 1, 1> {
   double sigma_px_;
 };
 
+/// (log f − m) / s.
+class FocalPriorCost : public ceres::SizedCostFunction<1, 1> {
+ public:
+  explicit FocalPriorCost(const FocalPrior& prior) : prior_(prior) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  FocalPrior prior_;
+};
+
 struct TurningCameraOptions {
   FocalPrior focal;          ///< of the picture
   bool focal_known = false;  ///< held at exp(focal.log_mean)

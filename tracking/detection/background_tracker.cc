@@ -70,7 +70,7 @@ class BackgroundTracker::Impl {
     small.regions.assign(covered.begin(), covered.end());
     if (tracks_.anchors.empty()) {
       Cover(&small);
-      BeginAnchor(small, true);
+      BeginAnchor(small, PyramidOf(small), true, {});
       return;
     }
     waiting_.push_back(std::move(small));
@@ -102,17 +102,32 @@ class BackgroundTracker::Impl {
     return size_.ToFrame(Eigen::Vector2d(small.x, small.y)).cast<float>();
   }
 
-  [[nodiscard]] std::vector<cv::Point2f> CornersOf(const SmallFrame& frame) const {
+  /// Places of points with their names.
+  struct NamedPoints {
+    std::vector<cv::Point2f> at;
+    std::vector<int> names;
+  };
+
+  /// The points that live on, and corners elsewhere, which are named from `next_name_` on.
+  [[nodiscard]] NamedPoints CornersOf(const SmallFrame& frame, const NamedPoints& living) {
     cv::Mat strength;
     cv::cornerMinEigenVal(Picture(frame), strength, 3);
-    std::vector<cv::Point2f> corners = BestOfCells(frame, strength, kCornerCell);
-    return corners.size() < kEnoughCorners ? BestOfCells(frame, strength, kCornerCell / 2) : corners;
+    NamedPoints corners{BestOfCells(frame, strength, kCornerCell, living.at), living.names};
+    if (corners.at.size() < kEnoughCorners) corners.at = BestOfCells(frame, strength, kCornerCell / 2, living.at);
+    while (corners.names.size() < corners.at.size()) corners.names.push_back(next_name_++);
+    return corners;
   }
 
-  [[nodiscard]] std::vector<cv::Point2f> BestOfCells(const SmallFrame& frame, const cv::Mat& strength, int cell) const {
-    std::vector<cv::Point2f> corners;
+  /// `living`, and the best corner of every cell without any of them.
+  [[nodiscard]] std::vector<cv::Point2f> BestOfCells(const SmallFrame& frame, const cv::Mat& strength, int cell,
+                                                     const std::vector<cv::Point2f>& living) const {
+    std::vector<cv::Point2f> corners = living;
+    const int columns = (size_.width + cell - 1) / cell;
+    std::vector<char> is_taken(size_t(columns) * ((size_.height + cell - 1) / cell), 0);
+    for (const cv::Point2f& at : living) is_taken[size_t(int(at.y) / cell) * columns + int(at.x) / cell] = 1;
     for (int top = 0; top < size_.height; top += cell) {
       for (int left = 0; left < size_.width; left += cell) {
+        if (is_taken[size_t(top / cell) * columns + left / cell] != 0) continue;
         float best = kMinEigenvalue;
         cv::Point2f at(-1, -1);
         for (int y = std::max(top, kPictureBorder); y < std::min(top + cell, size_.height - kPictureBorder); ++y) {
@@ -130,14 +145,16 @@ class BackgroundTracker::Impl {
     return corners;
   }
 
-  void BeginAnchor(const SmallFrame& frame, bool after_break) {
-    KeepForLoops();
+  /// `target`: the frame's pyramid.
+  void BeginAnchor(const SmallFrame& frame, const Pyramid& target, bool after_break, const NamedPoints& living) {
     BackgroundTracks::Anchor& anchor = tracks_.anchors.emplace_back();
     anchor.frame = frame.frame;
     anchor.after_break = after_break;
-    corners_ = CornersOf(frame);
+    NamedPoints corners = CornersOf(frame, living);
+    corners_ = std::move(corners.at);
+    anchor.points = std::move(corners.names);
     for (const cv::Point2f& corner : corners_) anchor.pixels.push_back(InFrame(corner));
-    pyramid_ = PyramidOf(frame);
+    pyramid_ = target;
     seen_ = {corners_, std::vector<char>(corners_.size(), 1), static_cast<int>(corners_.size())};
     at_first_ = seen_.count;
     seen_s_ = looked_s_ = frame.time_s;
@@ -234,7 +251,7 @@ class BackgroundTracker::Impl {
     // Another picture has chance matches.
     if (seen.count >= std::max(kFewestTracked, static_cast<int>(kLeastShare * seen_.count))) {
       Accept(frame, seen);
-      if (seen.count < NumExpected()) NextAnchor(frame);
+      if (seen.count < NumExpected()) NextAnchor(frame, target);
       return;
     }
     // A blurred frame is passed over.
@@ -243,15 +260,11 @@ class BackgroundTracker::Impl {
     if (!is_blank && lost_s > kSeekS && frame.time_s - sought_s_ > kSeekS) {
       sought_s_ = frame.time_s;
       if (IsFoundAgain(frame, target)) {
-        BeginAnchor(frame, false);
-        CloseLoops(frame, kept_.size());
+        AnchorOfLoops(frame, target);
         return;
       }
     }
-    if (is_blank || lost_s > kLostS) {
-      BeginAnchor(frame, true);
-      tracks_.anchors.back().after_break = CloseLoops(frame, kept_.size()) == 0;
-    }
+    if (is_blank || lost_s > kLostS) AnchorOfLoops(frame, target);
     looked_s_ = frame.time_s;
   }
 
@@ -280,9 +293,38 @@ class BackgroundTracker::Impl {
     }
   }
 
-  void NextAnchor(const SmallFrame& frame) {
-    BeginAnchor(frame, false);
-    CloseLoops(frame, kept_.size() - 1);
+  /// The frame, of which the latest anchor has a sight, becomes the next.
+  void NextAnchor(const SmallFrame& frame, const Pyramid& target) {
+    NamedPoints living;
+    Revive(frame, tracks_.anchors.back().points, seen_, &living);
+    CloseLoops(frame, target, &living);
+    KeepForLoops();
+    BeginAnchor(frame, target, false, living);
+  }
+
+  /// The frame becomes the next anchor; a break, unless earlier anchors' points are in it.
+  void AnchorOfLoops(const SmallFrame& frame, const Pyramid& target) {
+    NamedPoints living;
+    KeepForLoops();
+    const int found = CloseLoops(frame, target, &living);
+    BeginAnchor(frame, target, found == 0, living);
+  }
+
+  /// Adds those of an anchor's points that are seen, inside the picture's border and apart from the others.
+  void Revive(const SmallFrame& frame, const std::vector<int>& names, const Seen& seen, NamedPoints* living) const {
+    for (size_t i = 0; i < seen.at.size(); ++i) {
+      const cv::Point2f& at = seen.at[i];
+      const bool inside = at.x >= kPictureBorder && at.y >= kPictureBorder &&
+                          at.x < float(size_.width - kPictureBorder) && at.y < float(size_.height - kPictureBorder);
+      if (seen.is_seen[i] == 0 || !inside || IsCovered(frame, at)) continue;
+      bool is_apart = true;
+      for (size_t k = 0; is_apart && k < living->at.size(); ++k) {
+        is_apart = living->names[k] != names[i] && cv::norm(living->at[k] - at) >= kMinDistance;
+      }
+      if (!is_apart) continue;
+      living->at.push_back(at);
+      living->names.push_back(names[i]);
+    }
   }
 
   struct Kept {
@@ -312,15 +354,15 @@ class BackgroundTracker::Impl {
            std::any_of(kept_.begin(), kept_.end(), [&](const Kept& kept) { return is_in(kept.pyramid, kept.corners); });
   }
 
-  /// Seeks the latest anchor in the first `count` that were kept; returns the number in which it was found.
-  int CloseLoops(const SmallFrame& frame, size_t count) {
+  /// Seeks kept anchors in the frame; returns the number found, whose points live on where no others are.
+  int CloseLoops(const SmallFrame& frame, const Pyramid& target, NamedPoints* living) {
     int found = 0;
-    for (size_t k = 0; k < count; ++k) {
-      const Kept& kept = kept_[k];
-      Seen start{kept.corners, std::vector<char>(kept.corners.size(), 1), 0};
-      const Seen seen = Seek(kept.pyramid, kept.corners, pyramid_, frame, start);
-      if (seen.count < kFoundAgainShare * double(kept.corners.size())) continue;
-      AddSight(frame, seen, &tracks_.anchors[kept.anchor]);
+    for (auto kept = kept_.rbegin(); kept != kept_.rend(); ++kept) {
+      Seen start{kept->corners, std::vector<char>(kept->corners.size(), 1), 0};
+      const Seen seen = Seek(kept->pyramid, kept->corners, target, frame, start);
+      if (seen.count < kFoundAgainShare * double(kept->corners.size())) continue;
+      AddSight(frame, seen, &tracks_.anchors[kept->anchor]);
+      Revive(frame, tracks_.anchors[kept->anchor].points, seen, living);
       ++found;
     }
     return found;
@@ -334,6 +376,7 @@ class BackgroundTracker::Impl {
   int at_first_ = 0;                  ///< points seen in the first frame after the anchor
   cv::Point2f velocity_{0, 0};        ///< small pixels a second, at the latest sight
   double seen_s_ = 0, looked_s_ = 0, sought_s_ = 0, moved_s_ = 0;
+  int next_name_ = 0;
   bool rests_ = true, has_moved_ = false;
   std::deque<SmallFrame> waiting_;  ///< passed over
   std::vector<Kept> kept_;

@@ -7,9 +7,10 @@
 /// by OpenCV's pyramidal search (Lucas and Kanade; Bouguet 2001) in the anchor's own picture, from where it is expected
 /// after the latest sights, and back again: a place is kept if the way back ends within 0.4 pixels of the start and
 /// nobody covers it. When less than six tenths of the points that were seen at first are left, the frame becomes the
-/// next anchor. Frames with fewer than 12, or three tenths of those before, are passed over. From 0.1 s of them on
-/// earlier anchors are sought in them, and one in which half of an anchor's points are is the next anchor; after 0.7 s
-/// the next anchor begins anew (a cut, a whip pan, a blank wall).
+/// next anchor: points that are seen there live on under their names, at the places where they are seen, and corners of
+/// cells without any are added. Frames with fewer than 12, or three tenths of those before, are passed over. From 0.1 s
+/// of them on earlier anchors are sought in them, and one in which half of an anchor's points are is the next anchor,
+/// in which they live on; after 0.7 s the next anchor begins anew (a cut, a whip pan, a blank wall).
 ///
 /// While the points rest, only one frame in a fifth of a second is looked at. Once they move (their median by more than
 /// 0.3 shrunk pixels) every frame is, those that were passed over included: their small pictures are kept until then.

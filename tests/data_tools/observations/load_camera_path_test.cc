@@ -47,6 +47,8 @@ TEST_F(CameraPathFile, RoundTrip) {
     EXPECT_EQ(read.poses[i].camera_from_world_translation, path.poses[i].camera_from_world_translation);
   }
   EXPECT_EQ(CameraPathOnClock(read, kClip, {}, "x").timestamps, path.timestamps);
+  WriteCameraPath(folder_.File("units.json"), path, false);
+  EXPECT_FALSE(LoadCameraPath(folder_.File("units.json")).is_metric);
 }
 
 TEST_F(CameraPathFile, FramesQuaternionsAndIntrinsics) {
@@ -60,6 +62,16 @@ TEST_F(CameraPathFile, FramesQuaternionsAndIntrinsics) {
   EXPECT_NEAR(read.poses[1].camera_from_world_rotation(1, 0), 1, 1e-7);
   EXPECT_THAT(CameraPathOnClock(read, kClip, {}, "x").timestamps, ElementsAre(0, 0.3));
   EXPECT_THAT(CameraPathOnClock(read, kClip, {.fps = 5}, "x").timestamps, ElementsAre(0, 0.6));
+}
+
+TEST_F(CameraPathFile, UnitsAreMetresUnlessItSaysOtherwise) {
+  const std::string frames = R"("frames":[{"frame":1,"quaternion":[1,0,0,0],"translation":[1,0,0]}]})";
+  EXPECT_TRUE(CameraPathFromText(R"({"camera_path":1,"metric":true,)" + frames, "x").is_metric);
+  const RecordedCameraPath units = CameraPathFromText(R"({"camera_path":1,"metric":false,)" + frames, "x");
+  EXPECT_FALSE(units.is_metric);
+  EXPECT_THAT(CameraPathOnClock(units, kClip, {}, "x").timestamps, ElementsAre(0.1))
+      << "counted from 0, as no COLMAP's";
+  EXPECT_THAT(ErrorOf(R"({"camera_path":1,"metric":"no",)" + frames), HasSubstr("metric"));
 }
 
 TEST_F(CameraPathFile, ColmapsImagesAreFramesByTheirNumbers) {

@@ -54,7 +54,7 @@ TEST(FoundCameraMotion, ACameraThatTurnsGivesAPathAndAFocalLength) {
   EXPECT_EQ(found.said, "");
   const Found known = Find(background, OfVideo(), CameraKnowledge::kKnown);
   EXPECT_TRUE(known.report.found);
-  EXPECT_FALSE(known.scene.focal_of_turning.has_value());
+  EXPECT_FALSE(known.scene.focal_of_motion.has_value());
 }
 
 TEST(FoundCameraMotion, AStillCameraStaysWithoutAPath) {
@@ -68,14 +68,69 @@ TEST(FoundCameraMotion, AStillCameraStaysWithoutAPath) {
   EXPECT_NE(MovingCameraWarning({}, {}, fast), "");
 }
 
-TEST(FoundCameraMotion, OtherMotionIsSaidAndNotUsed) {
+/// Goes sideways and turns a little before things 3 to 12 m away.
+SyntheticBackground Walk() {
   SyntheticBackground background;
   background.nearest_m = 3;
   background.farthest_m = 12;
-  background.pose = [](double t) { return CameraPose{Eigen::Matrix3d::Identity(), {-0.4 * t, 0, 0}}; };
-  const Found moving = Find(background, OfVideo());
+  background.frames_of_anchor = 25;
+  background.pose = [](double t) {
+    return CameraPose{Tremor(t, 1).camera_from_world_rotation, Eigen::Vector3d(-0.4 * t, 0.05 * std::sin(5 * t), 0)};
+  };
+  return background;
+}
+
+TEST(FoundCameraMotion, ACameraThatGoesSomewhereGivesAPathOfUnknownLength) {
+  const Found found = Find(Walk(), OfVideo());
+  ASSERT_TRUE(found.scene.camera_path.has_value()) << found.report.motion;
+  EXPECT_FALSE(found.scene.camera_path->is_metric);
+  EXPECT_EQ(CameraScaleOf(OfVideo(), *found.scene.camera_path), 0);
+  EXPECT_EQ(found.report.motion.rfind("moving: ", 0), 0u) << found.report.motion;
+  EXPECT_TRUE(found.report.goes);
+  EXPECT_GT(found.report.background_points, 50);
+  EXPECT_GT(found.report.sigma_place, 0);
+  EXPECT_LT(found.report.sigma_place, 0.05);
+  ASSERT_TRUE(found.scene.focal_of_motion.has_value());
+  EXPECT_NEAR(found.scene.focal_of_motion->log_mean, std::log(1000.0), 0.05);
+  EXPECT_EQ(found.said, "");
+  CameraPathSummary solved;
+  solved.moves = solved.estimated = true;
+  solved.scale_m = 2.5;
+  solved.why = "feet";
+  EXPECT_NE(ToText(found.report, solved).find("points in space"), std::string::npos) << ToText(found.report, solved);
+  EXPECT_NE(ToText(found.report, solved).find("from feet"), std::string::npos) << ToText(found.report, solved);
+}
+
+TEST(FoundCameraMotion, APathOfUnknownLengthIsReadAsItIsWritten) {
+  const ScratchFolder folder;
+  for (const char* name : {"path.json", "images.txt"}) {
+    TrackSettings request = OfVideo();
+    request.camera_path_out = folder / name;
+    const SyntheticBackground background = Walk();
+    const Found found = Find(background, request);
+    ASSERT_TRUE(found.scene.camera_path.has_value());
+    const RecordedCameraPath read = LoadCameraPath(request.camera_path_out);
+    EXPECT_FALSE(read.is_metric) << name;
+    const std::vector<double> seconds = TracksOf(background).timestamps;
+    const CameraPath path = CameraPathOnClock(read, seconds, {}, name);
+    EXPECT_EQ(path.timestamps, found.scene.camera_path->seconds) << name;
+    const CameraPose &expected = found.scene.camera_path->poses.back(), &last = path.poses.back();
+    EXPECT_LT(RotationAngleBetween(last.camera_from_world_rotation, expected.camera_from_world_rotation), 1e-7);
+    EXPECT_LT((last.camera_from_world_translation - expected.camera_from_world_translation).norm(), 1e-9);
+    EXPECT_EQ(read.camera.has_value(), std::string(name) == "images.txt");
+  }
+  EXPECT_NEAR(LoadCameraPath(folder / "images.txt").camera->fx, 1000, 50);
+}
+
+TEST(FoundCameraMotion, OtherMotionIsSaidAndNotUsed) {
+  SyntheticBackground leaves;
+  leaves.noise_px = 3;
+  leaves.pose = Walk().pose;
+  leaves.nearest_m = 3, leaves.farthest_m = 12;
+  leaves.wanderers = 0.7;
+  const Found moving = Find(leaves, OfVideo());
   EXPECT_FALSE(moving.scene.camera_path.has_value());
-  EXPECT_NE(moving.said.find("--camera-path"), std::string::npos) << moving.said;
+  EXPECT_NE(moving.said.find("--camera-path"), std::string::npos) << moving.report.motion;
   SyntheticBackground zooming;
   zooming.pose = [](double t) { return Tremor(t, 1); };
   zooming.zoom = [](double t) { return 1 + 0.1 * t; };

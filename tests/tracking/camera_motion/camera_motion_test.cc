@@ -172,7 +172,12 @@ TEST(CameraMotion, ACameraThatGoesSomewhereMoves) {
   };
   const CameraMotion motion = FindCameraMotion(TracksOf(scene), UnknownFocal(scene));
   EXPECT_EQ(motion.kind, CameraMotionKind::kMoving) << motion.why;
-  EXPECT_FALSE(motion.has_path());
+  ASSERT_TRUE(motion.has_path()) << motion.why;
+  EXPECT_EQ(motion.path.poses.size(), size_t(scene.frames));
+  EXPECT_EQ(motion.sigma_place.size(), size_t(scene.frames));
+  EXPECT_GT(motion.extent, 0.1);
+  EXPECT_GT(motion.points.size(), 50u);
+  EXPECT_NE(motion.why.find("points in space"), std::string::npos) << motion.why;
 }
 
 TEST(CameraMotion, AStatedDeviationIsThatOfTheErrors) {
@@ -245,6 +250,9 @@ TEST(CameraMotion, ContradictionsAreRefused) {
   EXPECT_THROW(FindCameraMotion(tracks, {}), std::invalid_argument);
   tracks = TracksOf(scene);
   tracks.anchors[0].sights[3].pixels.pop_back();
+  EXPECT_THROW(FindCameraMotion(tracks, {}), std::invalid_argument);
+  tracks = TracksOf(scene);
+  tracks.anchors[0].points.pop_back();
   EXPECT_THROW(FindCameraMotion(tracks, {}), std::invalid_argument);
   tracks = TracksOf(scene);
   tracks.anchors.push_back(tracks.anchors[0]);

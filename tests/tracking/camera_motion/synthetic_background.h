@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -21,6 +22,7 @@ struct SyntheticBackground {
   std::function<CameraPose(double)> pose = [](double) { return CameraPose(); };  ///< camera from scene, by seconds
   std::function<double(double)> zoom = [](double) { return 1.0; };
   double nearest_m = 1e6, farthest_m = 1e6;  ///< from the first camera; equal: a sphere
+  bool flat = false;  ///< all that is before the first camera on a wall across its view, at nearest_m
   double noise_px = 0.2;
   double wanderers = 0;  ///< share of the points that move by themselves
   double overlay = 0;    ///< share of the points that stay in place in the picture
@@ -44,6 +46,7 @@ inline BackgroundTracks TracksOf(const SyntheticBackground& scene) {
     const double x = normal(random), y = normal(random), z = normal(random);
     const double distance = scene.nearest_m + (scene.farthest_m - scene.nearest_m) * uniform(random);
     point.at = distance * Eigen::Vector3d(x, y, z).normalized();
+    if (scene.flat && point.at.z() > 0.2 * distance) point.at *= scene.nearest_m / point.at.z();
     point.is_overlay = uniform(random) < scene.overlay;
     point.wanders = uniform(random) < scene.wanderers;
     const double along = normal(random), across = normal(random);
@@ -84,13 +87,25 @@ inline BackgroundTracks TracksOf(const SyntheticBackground& scene) {
     if (t % scene.frames_of_anchor != 0) continue;
     BackgroundTracks::Anchor& anchor = tracks.anchors.emplace_back();
     anchor.frame = t;
-    chosen.clear();
+    // Points that the former anchor sees in this frame live on, where they are seen.
+    std::vector<size_t> living;
+    if (tracks.anchors.size() > 1) {
+      const BackgroundTracks::Anchor& former = tracks.anchors[tracks.anchors.size() - 2];
+      for (size_t i = 0; i < chosen.size(); ++i) {
+        if (!former.sights.back().pixels[i].allFinite()) continue;
+        living.push_back(chosen[i]);
+        anchor.pixels.push_back(former.sights.back().pixels[i]);
+      }
+    }
+    chosen = living;
     for (size_t i = 0; i < points.size() && chosen.size() < 150; ++i) {
       Eigen::Vector2d pixel;
+      if (std::find(living.begin(), living.end(), i) != living.end()) continue;
       if (!project(points[i], tracks.timestamps.back(), &pixel)) continue;
       chosen.push_back(i);
       anchor.pixels.push_back(pixel.cast<float>());
     }
+    for (const size_t i : chosen) anchor.points.push_back(static_cast<int>(i));
   }
   return tracks;
 }

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
+#include <set>
 #include <stdexcept>
 
 #include "geometry/base/percentile.h"
@@ -154,6 +156,32 @@ TEST(BackgroundTracker, NewAnchorsFollowWhatComesIntoView) {
   }
 }
 
+TEST(BackgroundTracker, PointsLiveOnFromAnchorToAnchor) {
+  const Blobs blobs(5);
+  BackgroundTracker tracker;
+  constexpr double kSpeed = -6.3;
+  for (int t = 0; t < 90; ++t) tracker.Push(blobs.Picture(280 + kSpeed * t, 0.4 * t), t / 30.0, {});
+  const BackgroundTracks tracks = tracker.Finish();
+  ASSERT_GE(tracks.anchors.size(), 3u);
+  std::map<int, Eigen::Vector2f> at_birth;  // in the picture of frame 0
+  for (size_t k = 0; k < tracks.anchors.size(); ++k) {
+    const BackgroundTracks::Anchor& anchor = tracks.anchors[k];
+    ASSERT_EQ(anchor.points.size(), anchor.pixels.size());
+    EXPECT_EQ(std::set<int>(anchor.points.begin(), anchor.points.end()).size(), anchor.points.size());
+    std::vector<double> off;
+    for (size_t i = 0; i < anchor.points.size(); ++i) {
+      const Eigen::Vector2f in_first = anchor.pixels[i] - float(anchor.frame) * Eigen::Vector2f(float(kSpeed), 0.4F);
+      const auto [known, is_new] = at_birth.emplace(anchor.points[i], in_first);
+      if (!is_new) off.push_back((known->second - in_first).norm());
+    }
+    if (k == 0) continue;
+    EXPECT_GT(off.size(), 30u) << k;
+    EXPECT_GT(anchor.points.size(), off.size() + 20) << "what comes into view has new names";
+    EXPECT_LT(Percentile(off, 50), 0.2) << k;
+    EXPECT_LT(Percentile(off, 90), 0.6) << k;
+  }
+}
+
 TEST(BackgroundTracker, ACutBeginsAnew) {
   const Blobs before(6), after(7);
   BackgroundTracker tracker;
@@ -184,6 +212,11 @@ TEST(BackgroundTracker, AViewThatWasSeenBeforeIsFoundAgain) {
   const auto loop = std::find_if(sights.begin(), sights.end(), [&](const auto& s) { return s.frame == again; });
   ASSERT_NE(loop, sights.end());
   EXPECT_GT(NumSeen(*loop), int(0.5 * double(tracks.anchors.front().pixels.size())));
+  const std::vector<int>&first = tracks.anchors.front().points, &last = tracks.anchors.back().points;
+  EXPECT_GT(std::count_if(last.begin(), last.end(),
+                          [&](int name) { return std::find(first.begin(), first.end(), name) != first.end(); }),
+            int(first.size() / 4))
+      << "its points live again";
 }
 
 TEST(BackgroundTracker, ABlankWallHasNoPoints) {
