@@ -90,6 +90,7 @@ std::function<ClipSettings()> AddClipOptions(CLI::App& verb) {
   verb.add_option("--view", track.view, "camera of files that hold several")->group(kAllClips)->type_name("NAME");
   AddDetectionOptions(verb, &track, "as of run and track", "Detection in raw videos");
   AddCalibrationOptions(verb, &track);
+  AddCameraPathOptions(verb, &track);
   AddLearnedOptions(verb, &track);
   AddSolveOptions(verb, &track);
   std::vector<const CLI::Option*> added;

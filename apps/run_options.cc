@@ -31,6 +31,7 @@ void AddOtherRunOptions(CLI::App& app, TrackPeopleClipRequest* request) {
   app.add_flag("--side-view", request->side_view, "the overlay also shows everybody from their side");
   AddDetectionOptions(app, &track, "auto, if --body has fingers or is not given", "Detection");
   AddCalibrationOptions(app, &track);
+  AddCameraPathOptions(app, &track);
   AddLearnedOptions(app, &track);
   AddSolveOptions(app, &track);
 }

@@ -60,9 +60,10 @@ void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::strin
 
 void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
   TrackSettings& c = *request;
-  app.add_option(
-         "--cameras", c.cameras,
-         "calibration: an AIST++ camera folder or setting, a Pose2Sim calib_refined.json, or this project's JSON")
+  app.add_option("--cameras", c.cameras,
+                 "calibration: an AIST++ camera folder or setting, a Pose2Sim Calib.toml or calib_refined.json, a "
+                 "rig.json, or this "
+                 "project's JSON")
       ->group(kCamera)
       ->type_name("FILE");
   app.add_option(
@@ -74,6 +75,10 @@ void AddCalibrationOptions(CLI::App& app, TrackSettings* request) {
   app.add_option("--focal", c.focal_px, "focal length in pixels, for a centred camera without distortion")
       ->group(kCamera)
       ->check(Quiet(CLI::PositiveNumber));
+}
+
+void AddCameraPathOptions(CLI::App& app, TrackSettings* request) {
+  TrackSettings& c = *request;
   app.add_option(
          "--camera-path", c.camera_path,
          "where a camera that moves was: COLMAP's folder or images.txt/.bin (its intrinsics are used where none "
@@ -129,11 +134,11 @@ void AddSolveOptions(CLI::App& app, TrackSettings* request) {
   app.add_option_function<std::string>(
          "--solver", [&s](const std::string& word) { s.solver = SequenceSolverFromString(word); },
          "the engine: chain+ceres (chain to near the minimum, Ceres from there), chain alone, or ceres in all stages "
-         "(several times slower)")
+         "(about three times slower)")
       ->group(kSolve)
       ->default_str(ToString(s.solver))
       ->check(CLI::IsMember({"chain+ceres", "ceres", "chain"}));
-  app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; results agree to rounding")
+  app.add_option("--threads", s.num_threads, "at most 256; 0: all cores; the same bytes for any number")
       ->group(kSolve)
       ->check(Quiet(CLI::Range(0, 256)))
       ->capture_default_str();
@@ -229,6 +234,7 @@ void AddOtherTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet) {
   AddDetectionOptions(app, request, "auto with a body that has fingers, else off",
                       "Detection (without the above, people are detected in --video)");
   AddCalibrationOptions(app, request);
+  AddCameraPathOptions(app, request);
   app.add_option("--camera", c.camera,
                  "pinhole: intrinsics from --cameras or --focal; unknown-focal: the focal length is estimated; weak: "
                  "weak perspective (default: pinhole when intrinsics are given, else unknown-focal)")

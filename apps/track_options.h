@@ -16,8 +16,10 @@ namespace bodyloom {
 /// Adds those of AddDetectorOptions() and AddPlaybackOptions(), --hands, --no-mask, --from and --to, in this group of
 /// the help. `hands`: the default that the help names.
 void AddDetectionOptions(CLI::App& app, TrackSettings* request, const std::string& hands, const std::string& group);
-/// Adds --cameras and --focal.
+/// Adds --cameras, --focal and --focal-35mm.
 void AddCalibrationOptions(CLI::App& app, TrackSettings* request);
+/// Adds --camera-path with its companions, --still and --camera-path-out.
+void AddCameraPathOptions(CLI::App& app, TrackSettings* request);
 /// Adds --body, --stature, --prior and --lifter.
 void AddLearnedOptions(CLI::App& app, TrackSettings* request);
 /// Adds --solver, --threads, --max-iterations, --straight-knees and the switches that disable parts of the tracker.
