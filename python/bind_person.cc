@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "geometry/base/check.h"
+#include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
 #include "pipelines/photo_avatar/make_photo_person.h"
 #include "pipelines/photo_avatar/person_folder.h"
@@ -76,7 +77,8 @@ class PersonObject {
   [[nodiscard]] std::shared_ptr<TrackObject> Moved(const TrackArgument& argument, bool own_stature) const {
     const std::shared_ptr<TrackObject> track = TrackFrom(argument);
     const PersonPlacing placed = own_stature ? PersonPlacing::kInScene : PersonPlacing::kInImage;
-    return std::make_shared<TrackObject>(MovedByPerson(person_, track->track, placed), track->name, person_.body);
+    return std::make_shared<TrackObject>(MovedByPerson(person_, TrackOnBody(*person_.body, track->track), placed),
+                                         track->name, person_.body);
   }
   [[nodiscard]] std::map<std::string, double> shares() const {
     const PhotoPersonReport& report = person_.report;

@@ -17,6 +17,7 @@
 #include "data_tools/video/video_encoder.h"
 #include "geometry/base/check.h"
 #include "geometry/biomechanics/track_angles.h"
+#include "geometry/body/hand_skeleton.h"
 #include "geometry/scene/camera_path.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/page/clip_page.h"
@@ -90,6 +91,15 @@ void AddAngles(const PersonOnPage& person, const WorldFrame& world, const std::v
   }
 }
 
+std::vector<int> FingerJointsOf(const BodyModel& body) {
+  std::vector<int> joints;
+  for (const HandSide side : {HandSide::kLeft, HandSide::kRight}) {
+    const std::optional<HandSkeleton> hand = FindHand(body, side);
+    if (hand) joints.insert(joints.end(), hand->joint.begin(), hand->joint.end());
+  }
+  return joints;
+}
+
 /// The person's frames laid on the page's clock.
 ClipPagePerson OnClock(const PersonOnPage& person, const WorldFrame& world, const std::vector<double>& moments) {
   const Track& track = *person.track;
@@ -97,20 +107,26 @@ ClipPagePerson OnClock(const PersonOnPage& person, const WorldFrame& world, cons
   const std::vector<std::string>& names = person.body->data().joint_names;
   ClipPagePerson on_page;
   on_page.name = PersonName(person);
-  for (Eigen::Index j = 0; j < track.joint_sigma.cols(); ++j) {
+  const std::vector<int> fingers = FingerJointsOf(*person.body);
+  std::vector<int> shown;  // thirty joints of fingers would hide the hands, and lead the mean of all
+  for (int j = 0; j < int(track.joint_sigma.cols()); ++j) {
+    if (std::find(fingers.begin(), fingers.end(), j) != fingers.end()) continue;
+    shown.push_back(j);
     const std::vector<std::string>& known = names.empty() ? SmplJointNames() : names;
     on_page.joint_names.push_back(size_t(j) < known.size() ? known[size_t(j)] : Concatenate("joint_", j));
   }
   on_page.status.assign(n, FrameStatus::kLost);
   on_page.residual_px.assign(n, kNaN);
-  on_page.joint_sigma_m.setConstant(Eigen::Index(n), track.joint_sigma.cols(), kNaN);
+  on_page.joint_sigma_m.setConstant(Eigen::Index(n), Eigen::Index(shown.size()), kNaN);
   const bool has_px = person.summary != nullptr && person.summary->frame_px.size() == size_t(track.num_frames());
   for (int t = 0; t < track.num_frames(); ++t) {
     const auto at = std::lower_bound(moments.begin(), moments.end(), track.motion.timestamps[size_t(t)]);
     const auto row = at - moments.begin();
     on_page.status[size_t(row)] = track.frame_status[size_t(t)];
     if (has_px) on_page.residual_px[size_t(row)] = person.summary->frame_px[size_t(t)];
-    if (t < track.joint_sigma.rows()) on_page.joint_sigma_m.row(row) = track.joint_sigma.row(t);
+    for (size_t j = 0; t < track.joint_sigma.rows() && j < shown.size(); ++j) {
+      on_page.joint_sigma_m(row, Eigen::Index(j)) = track.joint_sigma(t, shown[j]);
+    }
   }
   if (person.summary != nullptr) {
     on_page.plan = person.summary->plan;

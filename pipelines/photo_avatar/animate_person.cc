@@ -17,6 +17,7 @@
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "geometry/base/percentile.h"
+#include "geometry/body/hand_skeleton.h"
 #include "geometry/cloth/body_with_garment.h"
 #include "geometry/scene/rig.h"
 #include "geometry/scene/track_edits.h"
@@ -56,9 +57,10 @@ class PersonAnimation {
     CheckRequest();
     if (!request_.track.empty())
       track_ = ReadTrack(request_.track, MovingCamera::kTake);  // before the person, who takes longer to make
-    // Fingers of the motion move the fingers of a person who is made now.
-    if (request_.photos.fit.body.empty() && track_.motion.body == BuiltinBodyWithHands().name()) {
-      request_.photos.fit.body = request_.person.empty() ? kBodyWithHands : "";
+    // Fingers of the motion move those of a person who is made now, but for one who wears what was kept without them.
+    const bool chooses_body = request_.photos.fit.body.empty() && !std::filesystem::is_directory(request_.garment_from);
+    if (request_.person.empty() && chooses_body && track_.motion.body == BuiltinBodyWithHands().name()) {
+      request_.photos.fit.body = kBodyWithHands;
     }
     std::optional<ShownLight> light;
     if (!request_.relight.empty()) light = OtherLight(request_.relight);
@@ -120,6 +122,7 @@ class PersonAnimation {
     PhotoPersonRequest photo = request_.photos;
     photo.images = {from};
     photo.fit.person = 0;
+    if (photo.fit.body.empty() && HasFingers(*person_.bare)) photo.fit.body = kBodyWithHands;
     const PhotoPerson other = std::filesystem::is_directory(from) ? ReadPhotoPerson(from, photo.fit.body)
                                                                   : MakePhotoPerson(photo, callbacks_);
     try {

@@ -38,6 +38,17 @@ class TwoPeople(unittest.TestCase):
                 self.assertGreater(track.summary.focal_px, 0)
         self.assertEqual(tracks[0].camera.K[0, 0], tracks[1].camera.K[0, 0])
 
+    def test_run_leaves_the_body_as_it_is_without_hands(self):
+        usual = bodyloom.run(VIDEO, min_seconds=0.05, **SPAN)
+        without = bodyloom.run(VIDEO, hands="off", min_seconds=0.05, **SPAN)
+        self.assertEqual(len(usual), len(without))
+        for a, b in zip(usual, without):
+            self.assertEqual(b.poses.shape[1], 72)
+            np.testing.assert_array_equal(a.trans, b.trans)
+            np.testing.assert_array_equal(a.poses[:, :45], b.poses[:, :45])
+        with self.assertRaisesRegex(ValueError, "off, auto or on"):
+            bodyloom.run(VIDEO, hands="yes")
+
     def test_detect_gives_everybody_s_landmarks(self):
         people = bodyloom.detect(VIDEO, **SPAN)
         self.assertEqual(len(people), 2)
