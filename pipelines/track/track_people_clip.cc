@@ -138,7 +138,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   request.track.all_masks = request.masks;
   SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
-  const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
+  ChosenPeople people = DetectAndChoosePeople(request, callbacks);
   scene.body = BodyFor(request, given, people, scene.body);
   TrackPeopleReport report = ReportOf(request, people);
   FindMotion(request, people, callbacks, &clock, &scene, &report);
@@ -150,7 +150,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
     WriteMasks(request, people, callbacks, &report);
   }
   clock.Begin("track");
-  const TrackedScene tracked = TrackDetectedPeople(request, scene, people, callbacks, &report);
+  const TrackedScene tracked = TrackDetectedPeople(request, scene, &people, callbacks, &report);
   clock.Begin("write");
   WriteTracks(request.out, tracked.result.people, &report);
   if (request.overlay && tracked.any) {
@@ -176,13 +176,13 @@ TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& given_request, const
   request.track = WithTurn(request.track, callbacks);
   SceneInputs scene = SceneOf(request, given);
   clock.Begin("detect");
-  const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
+  ChosenPeople people = DetectAndChoosePeople(request, callbacks);
   scene.body = BodyFor(request, given, people, scene.body);
   TrackedPeople found;
   found.report = ReportOf(request, people);
   FindMotion(request, people, callbacks, &clock, &scene, &found.report);
   clock.Begin("track");
-  TrackedScene tracked = TrackDetectedPeople(request, scene, people, callbacks, &found.report);
+  TrackedScene tracked = TrackDetectedPeople(request, scene, &people, callbacks, &found.report);
   RequireAnyTrack(request, tracked);
   EndReport(&clock, &found.report);
   found.people = std::move(tracked.result.people);
