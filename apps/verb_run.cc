@@ -8,6 +8,7 @@
 #include "apps/run_options.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
+#include "pipelines/track/run_estimate.h"
 #include "pipelines/track/track_people_in_videos.h"
 
 namespace bodyloom {
@@ -23,6 +24,8 @@ constexpr const char* kRunFooter =
     "    bodyloom run clip.mp4 --out results --people 1 --detector full --side-view\n"
     "  two phones on tripods, nothing known of them:\n"
     "    bodyloom run left.mp4 right.mp4 --out results --report\n"
+    "  how long it will take:\n"
+    "    bodyloom run clip.mp4 --plan\n"
     "  seconds 3 to 8 of a calibrated camera:\n"
     "    bodyloom run clip.mp4 --out results --cameras calibration.json --view cam1 --from 3 --to 8\n"
     "then\n"
@@ -36,17 +39,25 @@ void AddRunVerb(CLI::App& app, Action* action) {
   auto request = std::make_shared<TrackPeopleInVideosRequest>();
   auto quiet = std::make_shared<bool>(false);
   auto no_overlay = std::make_shared<bool>(false);
-  verb->add_option("--out", request->out, "folder for the results, made when it is not there")
-      ->required()
+  auto plan = std::make_shared<bool>(false), json = std::make_shared<bool>(false);
+  verb->add_option("--out", request->out, "folder for the results, made when it is not there (required unless --plan)")
       ->type_name("DIR");
   AddRunVideosOptions(*verb, request.get());
   verb->add_flag("--report", request->report, "write report.html too: video, bodies in 3D and a timeline in one page");
   verb->add_flag("--no-overlay", *no_overlay, "draw no video");
   verb->add_flag("--quiet", *quiet, "no progress and no summary on the screen");
+  verb->add_flag("--plan", *plan, "detect people in the first second and estimate time and memory; write nothing");
+  verb->add_flag("--json", *json, "with --plan: the estimate as JSON");
   verb->callback([=] {
     *action = [=] {
       request->overlay = !*no_overlay;
-      const PipelineCallbacks callbacks = CommandCallbacks(*quiet);
+      if (*json && !*plan) throw RequestError("--json is the form of --plan: summary.json is always written");
+      const PipelineCallbacks callbacks = CommandCallbacks(*quiet || *json);
+      if (*plan) {
+        const RunPlan estimate = PlanRun(RequestOfOneVideo(*request), callbacks);
+        std::cout << (*json ? ToJson(estimate) : ToText(estimate));
+        return;
+      }
       const TrackPeopleReport report = HasSeveralVideos(*request)
                                            ? TrackPeopleInVideos(*request, callbacks)
                                            : TrackPeopleClip(RequestOfOneVideo(*request), callbacks);

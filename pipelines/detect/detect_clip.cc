@@ -175,6 +175,7 @@ DetectClipReport DetectClip(const DetectClipRequest& given_request, const Pipeli
   if (wants_dense) WriteObservations(request.dense, nullptr, &dense.dense), wrote(request.dense);
   clock.End();
   report.seconds = clock.seconds();
+  report.processor_seconds = clock.processor_seconds();
   report.total_seconds = clock.total();
   if (!request.json.empty()) {
     wrote(request.json);
@@ -205,6 +206,7 @@ std::string ToJson(const DetectClipReport& report) {
                      {"keypoints", report.dense->keypoints}};
   }
   json["seconds"] = ToJson(report.seconds);
+  json["processor_seconds"] = ToJson(report.processor_seconds);
   json["total_seconds"] = report.total_seconds;
   return json.dump(1) + "\n";
 }

@@ -55,7 +55,7 @@ struct DetectClipReport {
   int width = 0, height = 0, frames = 0;
   std::optional<FoundLandmarks> landmarks;  ///< if landmarks were detected
   std::optional<FoundDense> dense;
-  StageSeconds seconds;
+  StageSeconds seconds, processor_seconds;  ///< StageClock's
   double total_seconds = 0;
   std::vector<std::string> outputs;  ///< files written
 };

@@ -2,7 +2,6 @@
 #include "pipelines/live/run_live.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -16,15 +15,13 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/export/export_scene.h"
-#include "data_tools/export/vmc_sender.h"
 #include "geometry/base/check.h"
 #include "geometry/base/mailbox.h"
 #include "geometry/base/stopwatch.h"
 #include "pipelines/detect/detect_people.h"
 #include "pipelines/files.h"
-#include "pipelines/live/line_writer.h"
-#include "pipelines/live/live_server.h"
+#include "pipelines/live/live_delays.h"
+#include "pipelines/live/live_outputs.h"
 #include "pipelines/report_text.h"
 #include "pipelines/track/scene_inputs.h"
 #include "tracking/live/live_ground.h"
@@ -43,33 +40,6 @@ constexpr size_t kWaitingLandmarks = 8;
 double MillisecondsSince(LiveClock::time_point from) {
   return std::chrono::duration<double, std::milli>(LiveClock::now() - from).count();
 }
-
-/// Delays by the millisecond, in bounded memory.
-class DelayCounts {
- public:
-  void Add(double milliseconds) {
-    const auto bin = size_t(std::clamp(milliseconds, 0.0, double(counts_.size() - 1)));
-    ++counts_[bin];
-    ++total_;
-    most_ = std::max(most_, milliseconds);
-  }
-  [[nodiscard]] DelayPercentiles Percentiles() const { return {At(0.5), At(0.95), At(0.99), most_}; }
-
- private:
-  /// Middle of the bin that holds this share of the delays below its end.
-  [[nodiscard]] double At(double share) const {
-    if (total_ == 0) return std::numeric_limits<double>::quiet_NaN();
-    int64_t below = 0;
-    for (size_t bin = 0; bin < counts_.size(); ++bin) {
-      below += counts_[bin];
-      if (double(below) >= share * double(total_)) return double(bin) + 0.5;
-    }
-    return most_;
-  }
-  std::array<int64_t, 20'000> counts_ = {};
-  int64_t total_ = 0;
-  double most_ = 0;
-};
 
 /// A frame in which the person was looked for.
 struct Landmarks {
@@ -252,61 +222,6 @@ class LiveSolver {
   std::deque<LiveClock::time_point> arrived_;  ///< of the frames that are not returned yet
 };
 
-/// VMC, with its origin on the ground where the person was first.
-class VmcOutput {
- public:
-  explicit VmcOutput(const std::string& address) : sender_(address) {}
-
-  void Send(const LiveState& state) {
-    std::vector<VmcBone> bones;
-    if (state.HasPose()) {
-      const BodyPose pose = PoseInWorld(state.world, state.rest_joints.row(0).transpose(), state.pose);
-      if (!origin_) {
-        origin_ = state.rest_joints.row(0).transpose() + pose.trans;
-        origin_->y() = 0;
-      }
-      bones = VmcBones(*state.body, state.rest_joints, pose, *origin_);
-    }
-    sender_.Send(state.frame.timestamp, state.HasPose(), bones);
-  }
-
- private:
-  VmcSender sender_;
-  std::optional<Eigen::Vector3d> origin_;
-};
-
-/// All outputs of a run.
-class LiveOutputs {
- public:
-  LiveOutputs(const RunLiveRequest& request, WhenFull when_full) : on_frame_(request.on_frame) {
-    if (!request.osc.empty()) vmc_.emplace(request.osc);
-    if (!request.jsonl.empty()) lines_.emplace(request.jsonl, when_full);
-    if (!request.listen.empty()) server_.emplace(request.listen, request.track.video);
-  }
-
-  /// Returns false when nobody takes the lines any more.
-  bool Send(const LiveState& state) {
-    if (on_frame_) on_frame_(state);
-    if (vmc_) vmc_->Send(state);
-    if (!server_ && !lines_) return true;
-    std::string json = LiveJson(state);
-    if (server_) server_->Publish(state, json);
-    return !lines_ || lines_->Write(std::move(json));
-  }
-  [[nodiscard]] std::string url() const { return server_ ? server_->url() : ""; }
-  int64_t Finish() {
-    if (!lines_) return 0;
-    lines_->Finish();
-    return lines_->num_dropped();
-  }
-
- private:
-  std::function<void(const LiveState&)> on_frame_;
-  std::optional<VmcOutput> vmc_;
-  std::optional<LineWriter> lines_;
-  std::optional<LiveServer> server_;
-};
-
 class LiveRun {
  public:
   LiveRun(const RunLiveRequest& request, const PipelineCallbacks& callbacks)
@@ -315,7 +230,12 @@ class LiveRun {
         when_full_(request.video.pace == 0 && LiveSourceKindOf(request.track.video) == LiveSourceKind::kFile
                        ? WhenFull::kWait
                        : WhenFull::kDropOldest),
-        outputs_(request, when_full_),
+        outputs_({.page_address = request.listen,
+                  .page_title = request.track.video,
+                  .vmc_address = request.osc,
+                  .jsonl = request.jsonl,
+                  .on_frame = request.on_frame},
+                 when_full_),
         detector_(request),
         video_(request.track.video, VideoOptionsOf(request)),
         images_(1, when_full_),
@@ -483,11 +403,6 @@ class LiveRun {
   std::exception_ptr error_;
   int ended_ = 0;
 };
-
-std::string ToText(const DelayPercentiles& delay) {
-  return Fixed(delay.median, 0) + " ms in half of the frames, " + Fixed(delay.p95, 0) + " in 95 %, " +
-         Fixed(delay.p99, 0) + " in 99 %, " + Fixed(delay.most, 0) + " at most";
-}
 
 }  // namespace
 

@@ -15,6 +15,7 @@
 
 #include "data_tools/video/live_video.h"
 #include "geometry/base/callbacks.h"
+#include "pipelines/live/live_delays.h"
 #include "pipelines/live/live_state.h"
 #include "pipelines/track/track_request.h"
 #include "tracking/detection/frame_detector.h"
@@ -37,11 +38,6 @@ struct RunLiveRequest {
   std::function<void(const LiveState&)> on_frame;
   /// The detector of frames of one size; none: MakeFrameDetector(track.detector).
   std::function<std::unique_ptr<FrameDetector>()> make_detector;
-};
-
-/// Percentiles of a delay, ms, to a millisecond.
-struct DelayPercentiles {
-  double median = 0, p95 = 0, p99 = 0, most = 0;
 };
 
 struct RunLiveReport {

@@ -160,10 +160,10 @@ TrackPeopleReport ReportOf(const TrackPeopleRequest& request, const ChosenPeople
   return report;
 }
 
-TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneInputs& scene,
-                                 const ChosenPeople& people, bool gives_fingers, const PipelineCallbacks& callbacks,
-                                 TrackPeopleReport* report) {
+TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneInputs& scene, ChosenPeople* chosen,
+                                 bool gives_fingers, const PipelineCallbacks& callbacks, TrackPeopleReport* report) {
   TrackedScene tracked;
+  const ChosenPeople& people = *chosen;
   for (const int number : people.chosen) {
     const PersonTrack& person = people.everybody[size_t(number)];
     tracked.seen.push_back(ObservationsOf(people.clip, person, SpanOf(person), request.track, scene));
@@ -178,6 +178,7 @@ TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneI
   }
   callbacks.Begin(Concatenate("tracking ", count, count == 1 ? " person" : " people"));
   const PictureVertical lines = VerticalOfClip(request.track, people.clip, scene);
+  chosen->clip.masks.clear();  // half of a long clip's observations
   tracked.result = Solve(request, scene, lines, tracked.seen, tracked.bodies, cameras, callbacks);
   report->scene = tracked.result.summary.scene;
   for (size_t i = 0; i < count; ++i) {

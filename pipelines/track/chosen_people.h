@@ -59,11 +59,10 @@ struct TrackedScene {
 };
 
 /// Tracks the selected people and adds the results to `report`, which is ReportOf() them; `gives_fingers`:
-/// GivesFingers(). Warns by callbacks.Say() if a
-/// camera assumed to be static seems to move. Throws std::runtime_error, Cancelled.
-TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneInputs& scene,
-                                 const ChosenPeople& people, bool gives_fingers, const PipelineCallbacks& callbacks,
-                                 TrackPeopleReport* report);
+/// GivesFingers(). Warns by callbacks.Say() if a camera assumed to be static seems to move. The masks of `chosen` are
+/// freed. Throws std::runtime_error, Cancelled.
+TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneInputs& scene, ChosenPeople* chosen,
+                                 bool gives_fingers, const PipelineCallbacks& callbacks, TrackPeopleReport* report);
 
 /// Throws NoPersonFound with the reason if TrackedScene::any is false.
 void RequireAnyTrack(const TrackPeopleRequest& request, const TrackedScene& tracked);

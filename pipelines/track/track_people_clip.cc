@@ -139,7 +139,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   SceneInputs scene = SceneOf(request, given);
   request.track.detector.hands_and_faces = HandsFor(request, given, *scene.body);
   clock.Begin("detect");
-  const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
+  ChosenPeople people = DetectAndChoosePeople(request, callbacks);
   TrackPeopleReport report = ReportOf(request, people);
   FindMotion(request, people, callbacks, &clock, &scene, &report);
   clock.Begin("write");
@@ -151,7 +151,7 @@ TrackPeopleReport TrackPeopleClip(const TrackPeopleClipRequest& given_request, c
   }
   clock.Begin("track");
   const TrackedScene tracked =
-      TrackDetectedPeople(request, scene, people, GivesFingers(request, given), callbacks, &report);
+      TrackDetectedPeople(request, scene, &people, GivesFingers(request, given), callbacks, &report);
   clock.Begin("write");
   WriteTracks(request.out, tracked.result.people, &report);
   if (request.overlay && tracked.any) {
@@ -178,13 +178,13 @@ TrackedPeople TrackPeopleToMemory(const TrackPeopleRequest& given_request, const
   SceneInputs scene = SceneOf(request, given);
   request.track.detector.hands_and_faces = HandsFor(request, given, *scene.body);
   clock.Begin("detect");
-  const ChosenPeople people = DetectAndChoosePeople(request, callbacks);
+  ChosenPeople people = DetectAndChoosePeople(request, callbacks);
   TrackedPeople found;
   found.report = ReportOf(request, people);
   FindMotion(request, people, callbacks, &clock, &scene, &found.report);
   clock.Begin("track");
   TrackedScene tracked =
-      TrackDetectedPeople(request, scene, people, GivesFingers(request, given), callbacks, &found.report);
+      TrackDetectedPeople(request, scene, &people, GivesFingers(request, given), callbacks, &found.report);
   RequireAnyTrack(request, tracked);
   EndReport(&clock, &found.report);
   found.people = std::move(tracked.result.people);

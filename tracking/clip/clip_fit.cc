@@ -366,6 +366,10 @@ void ClipFit::Finish(TrackSequenceResult* result) {
   LoseUnseenFrames(problem_, result);
   FrameResiduals residuals;
   SummariseCosts(problem_, threads_, &residuals, &summary_);
+  if (options_.solver == SequenceSolver::kChain && num_frames() > static_cast<size_t>(kChainFramesAtOnce.whole)) {
+    summary_.final_cost = 0;  // that of the windows counts the frames that two of them share twice
+    for (const TermCost& term : summary_.costs) summary_.final_cost += term.cost;
+  }
   SummariseImageTerms(problem_, residuals, &summary_);
   for (const auto& term : terms_) term->Summarise(problem_, &summary_);
   result->track.world = WorldOfGround(summary_.ground, result->track.joints);

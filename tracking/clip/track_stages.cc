@@ -13,13 +13,13 @@ Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& op
   const double pull = input.initialiser == nullptr ? 0.0 : options.initialiser_weight;
   const int max = options.max_iterations, fine = coarse_to_fine ? options.max_fine_iterations : max;
   Stages stages{
-      // name, pull, kernel, tolerance, iterations, from, to
+      // name, pull, kernel, tolerance, iterations, from, to, in windows
       .near_start = {"fit near start", options.start_pull, 8, 1e-3, max, 0.05, 0.3},
       .coarse = {"fit coarse", pull, 4, 1e-4, max, 0.3, 0.45},
       .again = {"fit again", pull, 4, 1e-4, max, 0.45, 0.5},
       .round = {"", pull, 4, 1e-4, 0, 0.5, 0.6},
-      .all = {"fit", pull, 4, 1e-4, fine, 0.6, 0.8},
-      .finish = {"ceres", pull, 4, 1e-4, max, 0.8, 0.95},
+      .all = {"fit", pull, 4, 1e-4, fine, 0.6, 0.8, true},
+      .finish = {"ceres", pull, 4, 1e-4, max, 0.8, 0.95, true},
   };
   if (options.function_tolerance > 0) {
     for (Stage* stage :
@@ -46,7 +46,11 @@ bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem
     // Joints alone are evaluated as fast as skipped: 10 % slower with it on AIST++.
     if (input_.dense != nullptr) solve.chain.reuse_linearisation = kTrackerReuse;
   }
-  if (options_.solver == SequenceSolver::kChainThenCeres) solve.max_frames_at_once = kTrackerFramesAtOnce;
+  const FramesAtOnce& at_once = solver == SequenceSolver::kCeres ? kCeresFramesAtOnce : kChainFramesAtOnce;
+  if (options_.solver != SequenceSolver::kCeres && stage.in_windows &&
+      problem->states.size() > static_cast<size_t>(at_once.whole)) {
+    solve.max_frames_at_once = at_once.window;
+  }
   solve.max_iterations = stage.max_iterations;
   solve.num_threads = num_threads_;
   solve.function_tolerance = stage.tolerance;

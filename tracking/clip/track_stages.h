@@ -18,8 +18,16 @@ struct Stage {
   double landmark_kernel;  ///< c of the 2D joints, in σ
   double tolerance;        ///< relative change of the cost that ends it
   int max_iterations;
-  double from, to;  ///< of the whole run, for progress
+  double from, to;          ///< of the whole run, for progress
+  bool in_windows = false;  ///< a long clip's frames are solved in windows (kChainFramesAtOnce)
 };
+/// A solve of some frames at once takes memory for each: chain 60 KB and Ceres 300 KB (docs/lab/run_speed.md,
+/// "Memory"). Clips of more than `whole` frames are therefore solved in overlapping windows once the coarse frames have
+/// told shape and focal length.
+struct FramesAtOnce {
+  int whole, window;
+};
+inline constexpr FramesAtOnce kChainFramesAtOnce{2000, 1500}, kCeresFramesAtOnce{1000, 500};
 
 /// Coarse in time first: neighbouring frames resolve the ambiguities of a single frame, and 15 frames a second are
 /// enough for human motion. All stages but the last solve the coarse frames.

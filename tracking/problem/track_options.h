@@ -58,8 +58,8 @@ struct SolveOptions {
   double gradient_tolerance = 1e-9;   ///< … when no component of the gradient is larger
   double parameter_tolerance = 1e-9;  ///< … when the step is below this share of the unknowns' norm
   bool shape_constant = false, focal_constant = false;
-  /// Ceres: a clip of more frames is solved in overlapping windows of this length, with shape and focal length held; 0:
-  /// never. Not if users' terms couple frames.
+  /// A clip of more frames is solved in overlapping windows of this length, with shape and focal length held; 0: never.
+  /// Not if users' terms couple frames.
   int max_frames_at_once = 0;
   ChainOptions chain;
   /// Called after each iteration with (iteration, cost); false stops.
@@ -69,8 +69,6 @@ struct SolveOptions {
 /// The tracker's values of these options; linearisations are reused only with dense keypoints.
 inline constexpr int kTrackerEarlyDense = 300;
 inline constexpr double kTrackerReuse = 0.01, kTrackerFrozenShare = 0.05;
-/// The tracker's value for the last solve: Ceres uses 30 KB and more for each frame (docs/lab/ceres_finish.md).
-inline constexpr int kTrackerFramesAtOnce = 3000;
 
 struct SolveReport {
   SolveStatus status = SolveStatus::kFailure;

@@ -61,7 +61,7 @@ size_t MaxDenseOfFrame(const SequenceProblem& problem) {
 }  // namespace
 
 SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, ChainPoint* point,
-                         const SolveOptions& options, bool thinned) {
+                         const SolveOptions& options, bool thinned, const std::vector<char>& held) {
   Stopwatch watch;
   SolveReport report;
   ChainProblem& chain = *chain_problem;
@@ -81,12 +81,15 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   // Multipliers are held with the shared values, so with multipliers no frames are frozen.
   FrozenFrames frozen(chain.num_far_rows() > 0 ? 0 : options.chain.frozen_share);
   double spent = 0;  // iterations, those of a part of the frames by its size
-  const auto freeze = [&](const std::vector<char>& frames) {
+  const auto freeze = [&](std::vector<char> frames) {
+    if (frames.empty()) frames = held;
+    for (size_t t = 0; t < held.size(); ++t) frames[t] = frames[t] != 0 || held[t] != 0 ? 1 : 0;
     factor->SetFrozen(frames);
-    chain.SetFrozen(frames);
+    chain.SetFrozen(std::move(frames));
   };
   const auto finish = [&](SolveStatus status, std::string message) {
-    freeze({});
+    factor->SetFrozen({});
+    chain.SetFrozen({});
     report.status = status;
     report.message = std::move(message);
     report.final_cost = cost;
@@ -116,6 +119,7 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   };
   report.iterations = 1;
   if (!std::isfinite(cost)) return finish(SolveStatus::kFailure, "the cost is not finite at the start");
+  freeze({});
   const VectorXd scale = ColumnScale(chain.diagonal()), shared_scale = ColumnScale(chain.shared_diagonal());
   double x_norm = std::sqrt(chain.SquaredNorm(x));
   Radius radius;
@@ -238,14 +242,14 @@ SolveReport DescendChain(ChainProblem* chain_problem, ChainFactor* factor, Chain
   }
 }
 
-SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options) {
+SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options, const std::vector<char>& held) {
   Stopwatch watch;
   ChainProblem chain(*problem, options.shape_constant, options.focal_constant, options.num_threads);
   ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
   ChainPoint x(problem->states, *problem);
   const bool thin =
       options.chain.early_dense > 0 && MaxDenseOfFrame(*problem) > 2 * static_cast<size_t>(options.chain.early_dense);
-  SolveReport report = DescendChain(&chain, &factor, &x, options, thin);
+  SolveReport report = DescendChain(&chain, &factor, &x, options, thin, held);
   if (report.status != SolveStatus::kFailure) {
     problem->states = std::move(x.states);
     static_cast<SharedValues&>(*problem) = std::move(x);

@@ -28,13 +28,15 @@
 
 namespace bodyloom {
 
-/// Implements SolveSequence() for the chain engine.
-SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options);
+/// Implements SolveSequence() for the chain engine. `held`: T flags of frames that keep their states, no single ones;
+/// with any, the shared values keep theirs too. Empty: none.
+SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options, const std::vector<char>& held = {});
 
 /// Runs the iterations from `x`, which holds the best point afterwards (also after a failure). Linearisations already
 /// in `chain` are used as options.chain.reuse_linearisation permits. `early`: begin with options.chain.early_dense.
+/// `held`: as of SolveChain().
 SolveReport DescendChain(ChainProblem* chain, ChainFactor* factor, ChainPoint* x, const SolveOptions& options,
-                         bool early);
+                         bool early, const std::vector<char>& held = {});
 
 /// Selects frames of a chain that are temporarily held constant. After a few steps most frames have converged and a few
 /// still move along narrow valleys; steps of only these cost a few frames' work instead of the whole clip's.

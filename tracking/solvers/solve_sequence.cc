@@ -4,7 +4,11 @@
 #include <ceres/ceres.h>
 #include <omp.h>
 #include <algorithm>
+#include <functional>
 #include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "geometry/base/check.h"
 #include "tracking/solvers/ceres_problem.h"
@@ -12,29 +16,6 @@
 #include "tracking/solvers/term_costs.h"
 
 namespace bodyloom {
-
-SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options) {
-  const size_t T = problem->states.size();
-  BODYLOOM_CHECK(
-      T > 0 && problem->frames.size() == T && problem->timestamps.size() == T && problem->cut_before.size() == T,
-      "sequence: ", T, " states, ", problem->frames.size(), " frames, ", problem->timestamps.size(), " timestamps, ",
-      problem->cut_before.size(), " cut flags; expected the same number of each");
-  BODYLOOM_CHECK(problem->betas.size() == problem->layout.num_betas, "sequence: ", problem->betas.size(),
-                 " betas, the layout has ", problem->layout.num_betas);
-  if (options.solver == SequenceSolver::kCeres) return SolveWithCeres(problem, options);
-  SolveReport chain = SolveChain(problem, options);
-  const bool ended = chain.status == SolveStatus::kFailure || chain.status == SolveStatus::kStopped;
-  if (options.solver == SequenceSolver::kChain || ended) return chain;
-  SolveReport report = SolveWithCeres(problem, options);
-  report.iterations += chain.iterations;
-  report.initial_cost = chain.initial_cost;
-  report.seconds += chain.seconds;
-  report.seconds_evaluation += chain.seconds_evaluation;
-  report.seconds_linear_solver += chain.seconds_linear_solver;
-  report.frames_evaluated = chain.frames_evaluated;
-  report.frames_skipped = chain.frames_skipped;
-  return report;
-}
 
 namespace {
 
@@ -112,38 +93,111 @@ double CostOf(const SequenceProblem& problem, int num_threads) {
   return cost;
 }
 
+/// Frames that a user's term couples may be in different windows.
+bool SolvesInWindows(const SequenceProblem& problem, const SolveOptions& options) {
+  const int T = static_cast<int>(problem.states.size()), size = options.max_frames_at_once;
+  return size > 2 * kOverlap && T > size && problem.couplings.empty();
+}
+
+void AddTimes(const SolveReport& part, SolveReport* whole) {
+  whole->iterations += part.iterations;
+  whole->seconds += part.seconds;
+  whole->seconds_evaluation += part.seconds_evaluation;
+  whole->seconds_linear_solver += part.seconds_linear_solver;
+  whole->frames_evaluated += part.frames_evaluated;
+  whole->frames_skipped += part.frames_skipped;
+}
+
 /// Solves overlapping windows one after the other, each from the states that the one before has left. The frames next
 /// to a window are held constant and coupled to it by smoothness, so there is no seam, and every window lowers the cost
-/// of the whole. Shape, focal length and the other views are held.
-SolveReport SolveInWindows(const SolveOptions& options, SequenceProblem* problem) {
+/// of the whole. Shape, focal length and the other views are held. The costs are sums over the windows, so that frames
+/// of two windows count twice.
+SolveReport SolveInWindows(const SolveOptions& options, const std::function<SolveReport(int begin, int end)>& solve,
+                           SequenceProblem* problem) {
   const int T = static_cast<int>(problem->states.size()), size = options.max_frames_at_once;
   SolveReport report;
   report.status = SolveStatus::kConverged;
-  report.initial_cost = CostOf(*problem, options.num_threads);
   for (int begin = 0; begin == 0 || begin + kOverlap < T; begin += size - kOverlap) {
-    const SolveReport window = SolveFrames(begin, std::min(T, begin + size), true, options, problem);
-    report.iterations += window.iterations;
-    report.seconds += window.seconds;
-    report.seconds_evaluation += window.seconds_evaluation;
-    report.seconds_linear_solver += window.seconds_linear_solver;
+    const SolveReport window = solve(begin, std::min(T, begin + size));
+    AddTimes(window, &report);
+    report.initial_cost += window.initial_cost;
+    report.final_cost += window.final_cost;
     report.gradient_max_norm = std::max(report.gradient_max_norm, window.gradient_max_norm);
     report.message = window.message;
     if (window.status == SolveStatus::kConverged) continue;
     report.status = window.status;
     if (window.status != SolveStatus::kMaxIterations) break;
   }
-  report.final_cost = CostOf(*problem, options.num_threads);
+  return report;
+}
+
+/// The frames as a problem of their own; `frames` ascending. The shots of smoothness are counted from the first frame.
+SequenceProblem PartOf(const SequenceProblem& problem, const std::vector<int>& frames) {
+  SequenceProblem part = SelectFrames(problem, frames);
+  if (problem.smoothness.size() > 1) {
+    const std::vector<int> shots = ShotOfFrames(problem.cut_before);
+    part.smoothness.clear();
+    for (size_t i = 0; i < frames.size(); ++i) {
+      if (i == 0 || part.cut_before[i] != 0) part.smoothness.push_back(problem.smoothness[shots[frames[i]]]);
+    }
+  }
+  part.cut_before[0] = 0;
+  return part;
+}
+
+SolveReport SolveChainWindow(int begin, int end, SolveOptions options, SequenceProblem* problem) {
+  constexpr int kNeighbours = 2;  // that accelerations couple
+  const int T = static_cast<int>(problem->states.size());
+  std::vector<int> frames(std::min(T, end + kNeighbours) - std::max(0, begin - kNeighbours));
+  std::iota(frames.begin(), frames.end(), std::max(0, begin - kNeighbours));
+  std::vector<char> held;
+  for (const int t : frames) held.push_back(t < begin || t >= end ? 1 : 0);
+  SequenceProblem part = PartOf(*problem, frames);
+  options.shape_constant = options.focal_constant = true;
+  const SolveReport report = SolveChain(&part, options, held);
+  for (size_t i = 0; i < frames.size(); ++i) {
+    if (held[i] == 0) problem->states[frames[i]] = std::move(part.states[i]);
+  }
   return report;
 }
 
 }  // namespace
 
+SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options) {
+  const size_t T = problem->states.size();
+  BODYLOOM_CHECK(
+      T > 0 && problem->frames.size() == T && problem->timestamps.size() == T && problem->cut_before.size() == T,
+      "sequence: ", T, " states, ", problem->frames.size(), " frames, ", problem->timestamps.size(), " timestamps, ",
+      problem->cut_before.size(), " cut flags; expected the same number of each");
+  BODYLOOM_CHECK(problem->betas.size() == problem->layout.num_betas, "sequence: ", problem->betas.size(),
+                 " betas, the layout has ", problem->layout.num_betas);
+  if (options.solver == SequenceSolver::kCeres) return SolveWithCeres(problem, options);
+  const auto solve_window = [&](int begin, int end) { return SolveChainWindow(begin, end, options, problem); };
+  SolveReport chain = SolvesInWindows(*problem, options) ? SolveInWindows(options, solve_window, problem)
+                                                         : SolveChain(problem, options);
+  const bool ended = chain.status == SolveStatus::kFailure || chain.status == SolveStatus::kStopped;
+  if (options.solver == SequenceSolver::kChain || ended) return chain;
+  SolveReport report = SolveWithCeres(problem, options);
+  report.iterations += chain.iterations;
+  report.initial_cost = chain.initial_cost;
+  report.seconds += chain.seconds;
+  report.seconds_evaluation += chain.seconds_evaluation;
+  report.seconds_linear_solver += chain.seconds_linear_solver;
+  report.frames_evaluated = chain.frames_evaluated;
+  report.frames_skipped = chain.frames_skipped;
+  return report;
+}
+
 SolveReport SolveWithCeres(SequenceProblem* problem, const SolveOptions& options) {
-  const int T = static_cast<int>(problem->states.size());
-  const bool windows = options.max_frames_at_once > 2 * kOverlap && T > options.max_frames_at_once;
-  // Frames that a user's term couples may be in different windows.
-  if (!windows || !problem->couplings.empty()) return SolveFrames(0, T, false, options, problem);
-  return SolveInWindows(options, problem);
+  if (!SolvesInWindows(*problem, options)) {
+    return SolveFrames(0, static_cast<int>(problem->states.size()), false, options, problem);
+  }
+  SolveReport report = SolveInWindows(
+      options, [&](int begin, int end) { return SolveFrames(begin, end, true, options, problem); }, problem);
+  const double decrease = report.initial_cost - report.final_cost;  // of the whole too: the rest is held
+  report.final_cost = CostOf(*problem, options.num_threads);
+  report.initial_cost = report.final_cost + decrease;
+  return report;
 }
 
 SerialOpenMp::SerialOpenMp() : levels_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }

@@ -8,7 +8,9 @@
 namespace bodyloom {
 
 /// Solves the problem and writes the solution to its states, betas and log_focal. The solution has the same bytes for
-/// any number of threads. Throws std::invalid_argument when the problem's sizes contradict each other.
+/// any number of threads. Chain, too, solves more than options.max_frames_at_once frames in overlapping windows, with
+/// shape and focal length held; its report's costs are then sums over the windows. Throws std::invalid_argument when
+/// the problem's sizes contradict each other.
 SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options);
 
 /// Implements SolveSequence() with Ceres: Levenberg–Marquardt with sparse Cholesky on the blocks of ceres_problem.h,

@@ -210,6 +210,8 @@ TEST_F(DetectDenseClip, DetectClipWritesDenseKeypointsWithoutLookingForLandmarks
   EXPECT_EQ(json["dense"]["frames_seen"], 2);
   EXPECT_EQ(json["frames"], 2);
   EXPECT_FALSE(json.contains("people"));
+  EXPECT_EQ(json["processor_seconds"].size(), json["seconds"].size());
+  EXPECT_GT(json["processor_seconds"]["dense"], 0);
   EXPECT_THAT(ToText(report), HasSubstr("dense    1000 keypoints a frame in 2 frames, one of 1 people\n"));
 }
 

@@ -217,6 +217,51 @@ TEST(CeresProblem, WindowsLowerTheCostAsTheWholeDoesWithoutASeam) {
   }
 }
 
+TEST(ChainWindows, EndNearTheWholesAnswerWithoutASeam) {
+  SequenceSceneOptions scene_options;
+  scene_options.frames = 520;
+  scene_options.dense = 0;
+  const auto scene = MakeSequenceScene(scene_options);
+  SolveOptions options;
+  options.num_threads = 2;
+  options.max_iterations = 60;
+  options.solver = SequenceSolver::kChain;
+  options.function_tolerance = 1e-7;
+  SequenceProblem whole = scene->problem;
+  const SolveReport of_whole = SolveSequence(&whole, options);
+  // As the tracker: shape and focal length are known, the states are not.
+  SequenceProblem windows = scene->problem;
+  static_cast<SharedValues&>(windows) = whole;
+  SequenceProblem same = windows;
+  options.max_frames_at_once = 310;
+  const SolveReport of_windows = SolveSequence(&windows, options);
+  options.num_threads = 3;
+  SolveSequence(&same, options);
+  EXPECT_EQ(same.betas, windows.betas);
+  EXPECT_EQ(same.log_focal, windows.log_focal);
+  for (size_t t = 0; t < same.states.size(); ++t) {
+    EXPECT_EQ(same.states[t].rotations, windows.states[t].rotations) << t;
+    EXPECT_EQ(same.states[t].translation, windows.states[t].translation) << t;
+  }
+  EXPECT_EQ(of_windows.status, SolveStatus::kConverged);
+  const auto cost_of = [](const SequenceProblem& problem) {
+    double sum = 0;
+    for (const TermCosts& term : CostsByTerm(problem, 1)) sum += term.cost;
+    return sum;
+  };
+  EXPECT_NEAR(cost_of(whole), of_whole.final_cost, 1e-6 * of_whole.final_cost);
+  EXPECT_LT(cost_of(windows), 1.01 * of_whole.final_cost);
+  const auto smoothness = [](const SequenceProblem& problem, int begin, int end) {
+    for (const TermCosts& term : CostsByTerm(problem, 1)) {
+      if (term.term == "smoothness") return term.of_frame.segment(begin, end - begin).sum();
+    }
+    return 0.0;
+  };
+  for (const int seam : {210, 310}) {
+    EXPECT_LT(smoothness(windows, seam - 2, seam + 4), 1.1 * smoothness(whole, seam - 2, seam + 4) + 0.01) << seam;
+  }
+}
+
 TrackSequenceResult TrackDemo(const SynthClip& clip, SequenceSolver solver, int threads) {
   TrackSequenceInput input;
   input.body = &BuiltinBody();

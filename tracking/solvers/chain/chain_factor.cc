@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "geometry/base/check.h"
@@ -35,14 +36,21 @@ struct ChainFactor::Panel {
   Panel(Panel&&) = default;
   Panel& operator=(Panel&&) = default;
   void Clear() { std::fill(memory.begin(), memory.end(), 0.0); }
+  [[nodiscard]] size_t size() const { return memory.size() - 16; }
+  void CopyTo(std::vector<double>* values) const { values->assign(data, data + size()); }
+  void CopyFrom(const std::vector<double>& values) { std::copy(values.begin(), values.end(), data); }
 };
 
 /// Frames eliminated one after the other in one direction.
 struct ChainFactor::Half {
   int begin = 0, count = 0, direction = 1;
+  int first_kept = 0;  ///< the rows of the frames before it, in the order of elimination, are computed again
   bool ok = true;
   std::vector<Panel>* panels = nullptr;  ///< current, next, second; afterwards the system of the two middle frames
-  std::vector<double> shared_sum;        /// (s+1 rounded up)²: minus the arrow's products
+  std::vector<double> shared_sum;        ///< (s+1 rounded up)²: minus the arrow's products
+  /// Panels of the current and the next frame before each kBlock-th frame up to first_kept.
+  std::vector<std::array<std::vector<double>, 2>> checkpoints;
+  [[nodiscard]] int FrameAt(int i) const { return begin + i * direction; }
 };
 
 namespace {
@@ -64,10 +72,12 @@ void AddDense(const double* block, int n, bool transposed, double* target, int64
 
 }  // namespace
 
-ChainFactor::ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before, int num_multipliers)
+ChainFactor::ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before, int num_multipliers,
+                         int max_kept)
     : n_(frame_size),
       s_(shared_size),
       num_multipliers_(num_multipliers),
+      max_kept_(max_kept),
       b_columns_(RoundUp(shared_size + 1)),
       cut_before_(std::move(cut_before)) {
   BODYLOOM_CHECK(n_ > 0 && n_ % 3 == 0 && s_ >= 0 && !cut_before_.empty(), "chain: ", cut_before_.size(), " frames of ",
@@ -94,7 +104,8 @@ void ChainFactor::SetFrozen(std::vector<char> frozen) {
   frozen_ = std::move(frozen);
 }
 
-bool ChainFactor::Step(int t, Panel* front, Panel* next, Panel* second, std::vector<double>* shared_sum) {
+bool ChainFactor::Step(Panel* front, Panel* next, Panel* second, std::vector<double>* shared_sum,
+                       std::vector<double>* rows) const {
   if (!panel_internal::EliminateRows(front->data, front->stride, n_, RoundUp(n_) + b_columns_, second != nullptr)) {
     return false;
   }
@@ -127,12 +138,12 @@ bool ChainFactor::Step(int t, Panel* front, Panel* next, Panel* second, std::vec
     add(w2, y, second->data + second->arrow, second->stride, n_, b_columns_, false, false);
   }
   add(y, y, shared_sum->data(), b_columns_, b_columns_, b_columns_, true, false);
-  Store(t, *front);
+  if (rows != nullptr) Store(*front, rows);
   return true;
 }
 
-void ChainFactor::Store(int t, const Panel& front) {
-  std::vector<double>& out = factor_[t];
+void ChainFactor::Store(const Panel& front, std::vector<double>* rows) const {
+  std::vector<double>& out = *rows;
   size_t size = 0;
   for (int k = 0; k < n_; ++k) size += static_cast<size_t>(n_ - k + n_ + s_ + 1 + k / 3 * 3 + 3);
   out.resize(size);
@@ -146,24 +157,59 @@ void ChainFactor::Store(int t, const Panel& front) {
   }
 }
 
+void ChainFactor::AddToFront(const ChainSource& source, int t, int direction, Panel* front) const {
+  const bool back = direction < 0;
+  source.AddFrame(t, front->data, front->stride, front->data + front->arrow, front->stride);
+  AddBlocks(source.Next(back ? t - 1 : t), n_, back, front->data + front->next, front->stride);
+  AddBlocks(source.Second(back ? t - 2 : t), n_, back, front->data + front->second, front->stride);
+  AddDense(source.DenseNext(back ? t - 1 : t), n_, back, front->data + front->next, front->stride);
+}
+
 bool ChainFactor::Eliminate(const ChainSource& source, Half* half) {
   std::vector<Panel>& panels = *half->panels;
   while (panels.size() < 3) panels.emplace_back(n_, b_columns_);
   for (Panel& panel : panels) panel.Clear();
   half->shared_sum.assign(static_cast<size_t>(b_columns_) * b_columns_, 0.0);
+  half->checkpoints.resize((half->first_kept + kBlock - 1) / kBlock);
   for (int i = 0; i < half->count; ++i) {
-    const int t = half->begin + i * half->direction;
-    const bool back = half->direction < 0;
-    Panel& front = panels[0];
-    source.AddFrame(t, front.data, front.stride, front.data + front.arrow, front.stride);
-    AddBlocks(source.Next(back ? t - 1 : t), n_, back, front.data + front.next, front.stride);
-    AddBlocks(source.Second(back ? t - 2 : t), n_, back, front.data + front.second, front.stride);
-    AddDense(source.DenseNext(back ? t - 1 : t), n_, back, front.data + front.next, front.stride);
-    if (!Step(t, &panels[0], &panels[1], &panels[2], &half->shared_sum)) return false;
+    const bool kept = i >= half->first_kept;
+    if (!kept && i % kBlock == 0) {
+      for (int k = 0; k < 2; ++k) panels[k].CopyTo(&half->checkpoints[i / kBlock][k]);
+    }
+    const int t = half->FrameAt(i);
+    AddToFront(source, t, half->direction, &panels[0]);
+    if (!Step(&panels[0], &panels[1], &panels[2], &half->shared_sum, kept ? &factor_[t] : nullptr)) return false;
     std::rotate(panels.begin(), panels.begin() + 1, panels.end());
     panels[2].Clear();
   }
   return true;
+}
+
+void ChainFactor::VisitRows(int h, const std::function<bool(int, const std::vector<double>&)>& visit) const {
+  const Half& half = halves_[h];
+  int i = half.count - 1;
+  for (; i >= half.first_kept; --i) {
+    if (!visit(half.FrameAt(i), factor_[half.FrameAt(i)])) return;
+  }
+  if (i < 0) return;
+  std::vector<Panel> panels;
+  while (panels.size() < 3) panels.emplace_back(n_, b_columns_);
+  std::vector<std::vector<double>> rows(kBlock);
+  std::vector<double> shared_sum(static_cast<size_t>(b_columns_) * b_columns_);  // was taken the first time
+  while (i >= 0) {
+    const int first = i / kBlock * kBlock;
+    for (int k = 0; k < 2; ++k) panels[k].CopyFrom(half.checkpoints[i / kBlock][k]);
+    panels[2].Clear();
+    for (int k = first; k <= i; ++k) {
+      AddToFront(*source_, half.FrameAt(k), half.direction, &panels[0]);
+      Step(&panels[0], &panels[1], &panels[2], &shared_sum, &rows[k - first]);
+      std::rotate(panels.begin(), panels.begin() + 1, panels.end());
+      panels[2].Clear();
+    }
+    for (; i >= first; --i) {
+      if (!visit(half.FrameAt(i), rows[i - first])) return;
+    }
+  }
 }
 
 bool ChainFactor::EliminateMiddle(const ChainSource& source, const Segment& segment, Half* forward, Half* backward,
@@ -205,12 +251,13 @@ bool ChainFactor::EliminateMiddle(const ChainSource& source, const Segment& segm
       }
     }
   }
-  if (!Step(m, &first, two ? &last : nullptr, nullptr, shared_sum)) return false;
-  return !two || Step(m + 1, &last, nullptr, nullptr, shared_sum);
+  if (!Step(&first, two ? &last : nullptr, nullptr, shared_sum, &factor_[m])) return false;
+  return !two || Step(&last, nullptr, nullptr, shared_sum, &factor_[m + 1]);
 }
 
-void ChainFactor::BackSubstitute(int t, int next, int second, const double* shared, double* frames) const {
-  const double* row = factor_[t].data() + factor_[t].size();
+void ChainFactor::BackSubstitute(int t, const std::vector<double>& rows, int next, int second, const double* shared,
+                                 double* frames) const {
+  const double* row = rows.data() + rows.size();
   double* x = frames + static_cast<int64_t>(t) * n_;
   for (int k = n_ - 1; k >= 0; --k) {
     const int lower = k / 3 * 3 + 3;
@@ -240,11 +287,8 @@ std::vector<ChainFactor::Segment> ChainFactor::Segments() const {
   return segments;
 }
 
-bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared, const Eigen::VectorXd& shared_rhs,
-                        int num_threads, Eigen::VectorXd* frames, Eigen::VectorXd* shared_step) {
-  const int T = num_frames();
-  const std::vector<Segment> segments = Segments();
-  std::vector<Half> halves;  // two a segment
+std::vector<ChainFactor::Half> ChainFactor::HalvesOf(const std::vector<Segment>& segments) const {
+  std::vector<Half> halves;
   for (const Segment& segment : segments) {
     Half& forward = halves.emplace_back();
     forward.begin = segment.begin;
@@ -254,6 +298,32 @@ bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared
     backward.direction = -1;
     backward.count = std::max(0, segment.end - segment.middle - 2);
   }
+  return halves;
+}
+
+void ChainFactor::PlanMemory() {
+  const int share = max_kept_ / std::max<int>(1, static_cast<int>(halves_.size()));
+  int left = max_kept_;
+  for (Half& half : halves_) {
+    half.first_kept = std::max(0, half.count - share);
+    left -= half.count - half.first_kept;
+  }
+  for (Half& half : halves_) {
+    const int more = std::min(half.first_kept, left);
+    half.first_kept -= more;
+    left -= more;
+    for (int i = 0; i < half.first_kept; ++i) factor_[half.FrameAt(i)] = {};
+  }
+}
+
+bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared, const Eigen::VectorXd& shared_rhs,
+                        int num_threads, Eigen::VectorXd* frames, Eigen::VectorXd* shared_step) {
+  const int T = num_frames();
+  const std::vector<Segment> segments = Segments();
+  halves_ = HalvesOf(segments);
+  source_ = &source;
+  PlanMemory();
+  std::vector<Half>& halves = halves_;
   Eigen::MatrixXd S = shared.selfadjointView<Eigen::Lower>();
   Eigen::VectorXd rhs = shared_rhs;
   const auto subtract = [&](const std::vector<double>& sum) {
@@ -303,18 +373,18 @@ bool ChainFactor::Solve(const ChainSource& source, const Eigen::MatrixXd& shared
   double* x = frames->data();
   for (const Segment& segment : segments) {
     if (segment.end - segment.begin >= 2) {
-      BackSubstitute(segment.middle + 1, -1, -1, y, x);
-      BackSubstitute(segment.middle, segment.middle + 1, -1, y, x);
+      BackSubstitute(segment.middle + 1, factor_[segment.middle + 1], -1, -1, y, x);
+      BackSubstitute(segment.middle, factor_[segment.middle], segment.middle + 1, -1, y, x);
     } else {
-      BackSubstitute(segment.middle, -1, -1, y, x);
+      BackSubstitute(segment.middle, factor_[segment.middle], -1, -1, y, x);
     }
   }
   ParallelFor(static_cast<int>(halves.size()), num_threads, [&](int h) {
-    const Half& half = halves[h];
-    for (int i = half.count; i-- > 0;) {
-      const int t = half.begin + i * half.direction;
-      BackSubstitute(t, t + half.direction, t + 2 * half.direction, y, x);
-    }
+    const int direction = halves[h].direction;
+    VisitRows(h, [&](int t, const std::vector<double>& rows) {
+      BackSubstitute(t, rows, t + direction, t + 2 * direction, y, x);
+      return true;
+    });
   });
   return frames->allFinite() && shared_step->allFinite();
 }

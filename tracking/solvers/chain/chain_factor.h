@@ -15,9 +15,12 @@
 /// ends at once and its two middle frames last, at no extra cost: two tasks that share no data run in two threads, and
 /// the order of summation is the same for any number of threads.
 ///
-/// Memory: 8 n (2n + s + 4) bytes a frame, and scratch memory that is kept from one solve to the next: allocating it
-/// for each of many solves of a few frames would take as long as the elimination. Source of the elimination: any text
-/// on block band Cholesky; from both ends: "burn at both ends" (twisted) factorisation, van der Vorst 1987.
+/// Memory: 8 n (2n + s + 4) bytes a frame for up to kMaxKept frames. Of longer chains every kBlock-th frame's state of
+/// the elimination is kept instead, a twentieth of that, and the rows of the frames between are computed a second time
+/// when they are needed: the same bits, for the time of a second elimination of these frames. Beside it scratch memory
+/// that is kept from one solve to the next: allocating it for each of many solves of a few frames would take as long as
+/// the elimination. Source of the elimination: any text on block band Cholesky; from both ends: "burn at both ends"
+/// (twisted) factorisation, van der Vorst 1987; of the second elimination: checkpoints as in Griewank 1992.
 #pragma once
 
 #include <Eigen/Core>
@@ -46,7 +49,10 @@ class ChainFactor {
  public:
   /// `frame_size` n is a multiple of 3; `cut_before[t]` separates frame t from t − 1. The last `num_multipliers` of the
   /// shared values are multipliers (chain_couplings.cc): M is then not positive definite in them.
-  ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before, int num_multipliers = 0);
+  /// `max_kept`: number of frames whose rows are kept, at least.
+  ChainFactor(int frame_size, int shared_size, std::vector<char> cut_before, int num_multipliers = 0,
+              int max_kept = kMaxKept);
+  static constexpr int kMaxKept = 1024, kBlock = 128;
   ~ChainFactor();
   ChainFactor(const ChainFactor&) = delete;
   ChainFactor& operator=(const ChainFactor&) = delete;
@@ -61,7 +67,8 @@ class ChainFactor {
   /// zero: Solve() solves the system of the other frames only.
   void SetFrozen(std::vector<char> frozen);
 
-  /// Computes blocks of M⁻¹ for the matrix of the last Solve(), which must have succeeded and had no frozen frames:
+  /// Computes blocks of M⁻¹ for the matrix of the last Solve(), which must have succeeded and had no frozen frames, and
+  /// whose source is asked for it again where there are more than max_kept frames:
   /// calls visit(t, P) for each frame begin ≤ t < end with the (n + s)² block of its values and, after them, of the
   /// shared ones, in no particular order and from up to num_threads threads.
   ///
@@ -88,18 +95,29 @@ class ChainFactor {
   };
   [[nodiscard]] std::vector<Segment> Segments() const;
   static std::shared_ptr<InversePool> MakeInversePool();
+  [[nodiscard]] std::vector<Half> HalvesOf(const std::vector<Segment>& segments) const;
+  /// Chooses the frames whose rows are kept: those next to the middles, which are needed first.
+  void PlanMemory();
+  void AddToFront(const ChainSource& source, int t, int direction, Panel* front) const;
   bool Eliminate(const ChainSource& source, Half* half);
   bool EliminateMiddle(const ChainSource& source, const Segment& segment, Half* forward, Half* backward,
                        std::vector<double>* shared_sum);
-  bool Step(int t, Panel* front, Panel* next, Panel* second, std::vector<double>* shared_sum);
-  void BackSubstitute(int t, int next, int second, const double* shared, double* frames) const;
-  void Store(int t, const Panel& front);
+  /// Eliminates the frame of `front`, whose rows are written to `rows` unless it is null.
+  bool Step(Panel* front, Panel* next, Panel* second, std::vector<double>* shared_sum, std::vector<double>* rows) const;
+  /// Calls visit(t, rows) for the frames of half `h` of the last Solve(), from the last one eliminated to the first,
+  /// until it returns false.
+  void VisitRows(int h, const std::function<bool(int, const std::vector<double>&)>& visit) const;
+  void BackSubstitute(int t, const std::vector<double>& rows, int next, int second, const double* shared,
+                      double* frames) const;
+  void Store(const Panel& front, std::vector<double>* rows) const;
 
-  int n_, s_, num_multipliers_;
+  int n_, s_, num_multipliers_, max_kept_;
   int b_columns_;  ///< of the arrow section of a panel: s + 1 rounded up
   std::vector<char> cut_before_;
   std::vector<char> frozen_;                 ///< T, or empty: none
   std::vector<std::vector<double>> factor_;  ///< T: rows of [U from the diagonal | W₁ | arrow and right-hand side | W₂]
+  std::vector<Half> halves_;                 ///< two a segment, of the last Solve()
+  const ChainSource* source_ = nullptr;      ///< of the last Solve()
   Eigen::MatrixXd shared_inverse_;           ///< s×s block of M⁻¹
   std::vector<std::vector<Panel>> panels_;  ///< scratch of the halves that are eliminated at the same time
   std::vector<Panel> middle_panels_;

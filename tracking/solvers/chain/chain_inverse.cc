@@ -30,9 +30,9 @@ class ChainFactor::Inverse {
     for (Square* rows : {&Y_, &near_G_, &far_G_, &new_G_}) rows->assign(static_cast<size_t>(n_ * arrow_), 0.0);
   }
 
-  /// Goes to frame t: its rows couple it to no frame (0), to the near one (1), or to the near one and the far one (2).
-  /// It becomes the near one, and the near one the far one.
-  void Step(int t, int neighbours);
+  /// Goes to the frame of these rows, which couple it to no frame (0), to the near one (1), or to the near one and the
+  /// far one (2). It becomes the near one, and the near one the far one.
+  void Step(const std::vector<double>& rows, int neighbours);
   /// Exchanges near and far, to go on from the other end.
   void Turn() {
     near_.swap(far_);
@@ -45,7 +45,7 @@ class ChainFactor::Inverse {
  private:
   using Square = std::vector<double>;
 
-  void Unpack(int t, bool second);
+  void Unpack(const std::vector<double>& rows, bool second);
   /// V = U⁻ᵀ, lower triangular.
   void Invert();
   /// c += sign aᵀb; `columns` of rows that are `stride` apart in b and c.
@@ -95,8 +95,8 @@ class ChainFactor::InversePool {
   std::vector<std::unique_ptr<Inverse>> spare_;
 };
 
-void ChainFactor::Inverse::Unpack(int t, bool second) {
-  const double* from = f_.factor_[t].data();
+void ChainFactor::Inverse::Unpack(const std::vector<double>& rows, bool second) {
+  const double* from = rows.data();
   const auto take = [&](int count, double* to) {
     std::copy_n(from, count, to);
     from += count;
@@ -139,8 +139,8 @@ void ChainFactor::Inverse::Invert() {
   }
 }
 
-void ChainFactor::Inverse::Step(int t, int neighbours) {
-  Unpack(t, neighbours == 2);
+void ChainFactor::Inverse::Step(const std::vector<double>& rows, int neighbours) {
+  Unpack(rows, neighbours == 2);
   Invert();
   for (Square* square : {&new_near_, &near_new_, &far_new_, &new_G_}) Clear(square);
   Add(V_, V_, n_, stride_, 1, &new_near_, true, true);
@@ -211,16 +211,18 @@ void ChainFactor::VisitInverse(int begin, int end, int num_threads,
       visit(t, P);
     };
     if (m + 1 < segment.end) {
-      inverse.Step(m + 1, 0);
+      inverse.Step(factor_[m + 1], 0);
       hand_over(m + 1);
     }
-    inverse.Step(m, m + 1 < segment.end ? 1 : 0);
+    inverse.Step(factor_[m], m + 1 < segment.end ? 1 : 0);
     hand_over(m);
     if (!ahead) inverse.Turn();
-    for (int t = ahead ? m - 1 : m + 2; ahead ? t >= from : t < to; t += ahead ? -1 : 1) {
-      inverse.Step(t, 2);
+    VisitRows(i, [&](int t, const std::vector<double>& rows) {
+      if (ahead ? t < from : t >= to) return false;
+      inverse.Step(rows, 2);
       hand_over(t);
-    }
+      return true;
+    });
     inverses_->Return(std::move(scratch));
   });
 }
@@ -234,15 +236,14 @@ bool VisitCovariance(ChainProblem* chain, ChainFactor* factor, int begin, int en
   const Eigen::MatrixXd arrow = chain->Arrow(Eigen::VectorXd::Zero(chain->shared_size()));
   const bool solved =
       factor->Solve(*chain, arrow, Eigen::VectorXd::Zero(chain->arrow_size()), num_threads, &step, &shared_step);
-  chain->SetDamping(nullptr);
   const int size = chain->frame_size() + chain->shared_size();
-  if (!solved) return false;
-  if (chain->num_far_rows() == 0) {
+  if (solved && chain->num_far_rows() == 0) {
     factor->VisitInverse(begin, end, num_threads, visit);
-  } else {  // without multipliers
+  } else if (solved) {  // without multipliers
     factor->VisitInverse(begin, end, num_threads,
                          [&](int t, const Eigen::MatrixXd& P) { visit(t, P.topLeftCorner(size, size)); });
   }
+  chain->SetDamping(nullptr);  // not before: rows that were not kept are computed again
   return solved;
 }
 

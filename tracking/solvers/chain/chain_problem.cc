@@ -25,6 +25,11 @@ constexpr double kMetresPerBeta = 0.03;
 constexpr double kNothing = 1e-6;
 }  // namespace
 
+struct ChainProblem::Scratch {
+  FrameEvaluator evaluator;
+  FrameSystem system;
+};
+
 /// Borrows an evaluator for one frame. Any will do, since they hold only scratch memory.
 class ChainProblem::Lease {
  public:
@@ -40,15 +45,33 @@ class ChainProblem::Lease {
   }
   Lease(const Lease&) = delete;
   Lease& operator=(const Lease&) = delete;
-  FrameEvaluator& operator*() {
-    if (evaluator_ == nullptr) evaluator_ = std::make_unique<FrameEvaluator>();
+  Scratch& operator*() {
+    if (evaluator_ == nullptr) evaluator_ = std::make_unique<Scratch>();
     return *evaluator_;
   }
 
  private:
   ChainProblem* owner_;
-  std::unique_ptr<FrameEvaluator> evaluator_;
+  std::unique_ptr<Scratch> evaluator_;
 };
+
+ChainProblem::~ChainProblem() = default;
+
+void ChainProblem::PackedSystem::Pack(const FrameSystem& system, bool with_gradient) {
+  size = system.H.rows();
+  triangle.resize(static_cast<size_t>(size * (size + 1) / 2));
+  double* to = triangle.data();
+  for (Eigen::Index i = 0; i < size; ++i) to = std::copy_n(system.H.data() + i * size + i, size - i, to);
+  if (with_gradient) gradient = system.gradient;
+}
+
+void ChainProblem::PackedSystem::UnpackTo(Eigen::MatrixXd* H) const {
+  H->resize(size, size);
+  const double* from = triangle.data();
+  for (Eigen::Index i = 0; i < size; from += size - i, ++i) {
+    std::copy_n(from, size - i, H->data() + i * size + i);
+  }
+}
 
 ChainProblem::ChainProblem(const SequenceProblem& problem, bool shape_constant, bool focal_constant, int num_threads)
     : problem_(problem),
@@ -173,16 +196,19 @@ bool ChainProblem::AllFrozen(int64_t first, int64_t last) const {
 double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
   const int T = static_cast<int>(point.states.size()), s = shared_size();
   ParallelFor(T, num_threads_, [&](int t) {
-    FrameSystem& system = systems_[t];
+    PackedSystem& system = systems_[t];
     Anchor& anchor = anchors_[t];
     VectorXd d;
     skipped_[t] = IsFrozen(t) ? 1 : 0;
     if (IsFrozen(t)) return;
+    Lease lease(this);
+    auto& [evaluator, evaluated] = *lease;
     if (reuse_share_ > 0 && anchor.set && StepsFrom(anchor, point.states[t], point, &d)) {
+      system.UnpackTo(&evaluated.H);
       VectorXd full = VectorXd::Zero(system.gradient.size());
       full.head(n_) = d.head(n_);
       for (int i = 0; i < s; ++i) full[shared_columns_[i]] = d[n_ + i];
-      const VectorXd Hd = system.H.selfadjointView<Eigen::Lower>() * full;
+      const VectorXd Hd = evaluated.H.selfadjointView<Eigen::Lower>() * full;
       const double moved = 0.5 * full.dot(Hd);
       if (moved <= reuse_share_ * reuse_share_ * anchor.cost) {
         skipped_[t] = 1;
@@ -191,17 +217,17 @@ double ChainProblem::EvaluateFrames(const ChainPoint& point, bool derivatives) {
         return;
       }
     }
-    Lease evaluator(this);
-    (*evaluator).LimitPoints(max_points_);
-    (*evaluator).Evaluate(problem_.layout, problem_.frames[t], point.states[t], point, derivatives, &system);
-    costs_[t] = system.cost;
+    evaluator.LimitPoints(max_points_);
+    evaluator.Evaluate(problem_.layout, problem_.frames[t], point.states[t], point, derivatives, &evaluated);
+    costs_[t] = evaluated.cost;
     if (!derivatives) return;
-    frame_gradient_[t] = system.gradient;
-    anchor.set = reuse_share_ > 0 && std::isfinite(system.cost);
+    system.Pack(evaluated, reuse_share_ > 0);
+    frame_gradient_[t] = evaluated.gradient;
+    anchor.set = reuse_share_ > 0 && std::isfinite(evaluated.cost);
     if (!anchor.set) return;
     anchor.state = point.states[t];
     anchor.shared = point;
-    anchor.cost = system.cost;
+    anchor.cost = evaluated.cost;
   });
   num_skipped_ = static_cast<int>(std::count(skipped_.begin(), skipped_.end(), 1));
   double sum = 0;
@@ -386,14 +412,16 @@ bool ChainProblem::Marginalise(const ChainPoint& point, ChainPrior* prior) const
   Rows N(left.data(), size + 1, size + 1, Eigen::OuterStride<>(left_stride));
   Rows X(panel.data() + x_begin, n_, x_columns, Eigen::OuterStride<>(stride));
 
-  const FrameSystem& system = systems_[0];
-  A.leftCols(n_) = system.H.topLeftCorner(n_, n_).selfadjointView<Eigen::Lower>();
+  const PackedSystem& system = systems_[0];
+  Eigen::MatrixXd H;
+  system.UnpackTo(&H);
+  A.leftCols(n_) = H.topLeftCorner(n_, n_).selfadjointView<Eigen::Lower>();
   A.diagonal().array() += kNothing;
   for (int i = 0; i < s; ++i) {
-    X.col(2 * n_ + i) = system.H.row(shared_columns_[i]).head(n_).transpose();
+    X.col(2 * n_ + i) = H.row(shared_columns_[i]).head(n_).transpose();
     N(2 * n_ + i, size) = -frame_gradient_[0][shared_columns_[i]];
     for (int j = 0; j <= i; ++j) {
-      N(2 * n_ + i, 2 * n_ + j) = N(2 * n_ + j, 2 * n_ + i) = system.H(shared_columns_[i], shared_columns_[j]);
+      N(2 * n_ + i, 2 * n_ + j) = N(2 * n_ + j, 2 * n_ + i) = H(shared_columns_[i], shared_columns_[j]);
     }
   }
   X.col(size) = -gradient_.head(n_);
@@ -451,13 +479,13 @@ bool ChainProblem::Marginalise(const ChainPoint& point, ChainPrior* prior) const
 }
 
 void ChainProblem::AddFrame(int t, double* a, int64_t a_stride, double* b, int64_t b_stride) const {
-  const FrameSystem& system = systems_[t];
+  const PackedSystem& system = systems_[t];
   const auto offset = static_cast<Eigen::Index>(t) * n_;
   const double* own = &own_[static_cast<size_t>(offset) * 3];
   const int s = shared_size();
   for (int i = 0; i < n_; ++i) {
     // The lower triangle by columns is the upper one by rows.
-    const double* column = system.H.data() + i * system.H.rows();
+    const double* column = system.Column(i);
     double* row = a + i * a_stride;
     for (int j = i; j < n_; ++j) row[j] += column[j];
     for (int j = i; j < i / 3 * 3 + 3; ++j) row[j] += own[i / 3 * 9 + i % 3 * 3 + j % 3];

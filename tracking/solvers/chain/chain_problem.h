@@ -49,6 +49,7 @@ class ChainProblem : public ChainSource {
  public:
   /// The problem is borrowed. Its states, betas and log_focal are not read.
   ChainProblem(const SequenceProblem& problem, bool shape_constant, bool focal_constant, int num_threads);
+  ~ChainProblem() override;
 
   /// Limits the observations used of a term with thousands in a frame (FrameEvaluator::LimitPoints); 0: all.
   void LimitPoints(int max_points);
@@ -136,6 +137,18 @@ class ChainProblem : public ChainSource {
     SharedValues shared;
     double cost = 0;
   };
+  /// A frame's system at its anchor, half as large as a FrameSystem: the lower triangle of H by columns.
+  struct PackedSystem {
+    Eigen::Index size = 0;
+    std::vector<double> triangle;
+    Eigen::VectorXd gradient;  ///< where linearisations are reused
+
+    void Pack(const FrameSystem& system, bool with_gradient);
+    void UnpackTo(Eigen::MatrixXd* H) const;  ///< its lower triangle
+    /// Column i of H, whose entries from row i on are there.
+    [[nodiscard]] const double* Column(Eigen::Index i) const { return &triangle[i * size - i * (i + 1) / 2]; }
+    [[nodiscard]] double H(Eigen::Index row, Eigen::Index column) const { return Column(column)[row]; }
+  };
   /// A cost function on several frames, weighted by its loss.
   struct Coupling {
     const FrameCoupling* source = nullptr;
@@ -147,6 +160,7 @@ class ChainProblem : public ChainSource {
   struct CouplingOfFrame {
     int index, k;
   };
+  struct Scratch;
   class Lease;
   void Resize();
   /// Steps from a frame's anchor: n values, then the shared ones that are unknown. False when one is too long.
@@ -195,7 +209,7 @@ class ChainProblem : public ChainSource {
   bool shape_constant_, focal_constant_;
   RowMatrixXd shape_prior_;  ///< residual = shape_prior_ β + shape_offset_
   Eigen::VectorXd shape_offset_;
-  std::vector<FrameSystem> systems_;                        ///< T, at their anchors
+  std::vector<PackedSystem> systems_;                       ///< T, at their anchors
   std::vector<Anchor> anchors_;                             ///< T
   std::vector<char> skipped_;                               ///< T: the last evaluation reused the anchor's
   std::vector<Eigen::VectorXd> frame_gradient_;             ///< T, at the point linearised last
@@ -219,8 +233,8 @@ class ChainProblem : public ChainSource {
   const ChainPrior* prior_ = nullptr;
   Eigen::MatrixXd prior_matrix_;  ///< at the point linearised last
   Eigen::VectorXd prior_gradient_;
-  RowMatrixXd prior_next_;                                   ///< first frame with the second
-  std::vector<std::unique_ptr<FrameEvaluator>> evaluators_;  ///< not in use now
+  RowMatrixXd prior_next_;                            ///< first frame with the second
+  std::vector<std::unique_ptr<Scratch>> evaluators_;  ///< not in use now
   std::mutex evaluators_mutex_;
 };
 

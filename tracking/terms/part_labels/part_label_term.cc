@@ -64,6 +64,8 @@ PartLabelMatches::PartLabelMatches(const PartLabelSequence& labels, int t, std::
     : labels_(labels), t_(t), skinner_(std::move(skinner)), options_(options) {
   BODYLOOM_CHECK(t >= 0 && t < labels.num_frames(), "part labels: frame ", t, " of ", labels.num_frames());
   const PartMap map = MakePartMap(labels, t, kSpeckShare);
+  boxes_.resize(256);
+  pixels_of_part_.resize(256);
   FindBoxes(map);
   if (num_person_pixels_ < kMinPartPixels) {
     num_person_pixels_ = 0;
@@ -80,6 +82,8 @@ PartLabelMatches::PartLabelMatches(const PartLabelSequence& labels, int t, std::
     SampleInside(map);
   }
   SampleBoundary(map);
+  boxes_ = std::vector<PixelBox>();  // clips hold thousands of frames
+  pixels_of_part_ = std::vector<int>();
 }
 
 const DistanceField* PartLabelMatches::Field(uint8_t part) const {
@@ -415,6 +419,8 @@ void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& s
   AddContour(edges, model, *surface, camera, sigmas);
   AddBoundary(edges, model, *surface, camera, sigmas, kBoundaryReach * person_height_px);
   AddInside(part_of_face, model, *surface, camera, sigma_px);
+  targets_.shrink_to_fit();
+  contour_.shrink_to_fit();
   Weigh(weight);
 }
 

@@ -133,8 +133,8 @@ class PartLabelMatches {
   PartLabelOptions options_;
   int num_person_pixels_ = 0;
   int cell_px_ = 1;
-  std::array<PixelBox, 256> boxes_;  ///< box of each part; the person's at 0
-  std::array<int, 256> pixels_of_part_{};
+  std::vector<PixelBox> boxes_;  ///< box of each part, the person's at 0; while the frame is read
+  std::vector<int> pixels_of_part_;
   std::map<uint8_t, DistanceField> fields_;  ///< field of each part; the silhouette's at 0
   std::vector<BoundarySample> boundary_;
   std::vector<Inside> inside_;

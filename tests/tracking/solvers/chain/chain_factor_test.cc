@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <utility>
 
@@ -70,6 +71,30 @@ struct RandomChain : ChainSource {
   const double* Next(int t) const override { return next[t].data(); }
   const double* Second(int t) const override { return second[t].data(); }
   [[nodiscard]] MatrixXd Shared() const { return M.bottomRightCorner(s, s); }
+};
+
+/// A positive definite chain of any length without its dense matrix: frames differ, neighbours are coupled weakly.
+struct ChainOfLongClip : ChainSource {
+  int T, n, s;
+  std::vector<char> cuts;
+  std::vector<double> blocks;  ///< of one frame: n/3 of 3×3, all entries 0.1
+
+  ChainOfLongClip(int frames, int frame_size, int shared, std::vector<char> cut_before)
+      : T(frames),
+        n(frame_size),
+        s(shared),
+        cuts(std::move(cut_before)),
+        blocks(static_cast<size_t>(3 * frame_size), 0.1) {}
+  void AddFrame(int t, double* a, int64_t a_stride, double* y, int64_t y_stride) const override {
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j < n; ++j) a[i * a_stride + j] += i == j ? 4 + std::sin(t + i) : 0.1 * std::cos(t * i - j);
+      for (int j = 0; j < s; ++j) y[i * y_stride + j] += 0.01 * std::sin(t - i + 3 * j);
+      y[i * y_stride + s] += std::cos(0.7 * t + i);
+    }
+  }
+  const double* Next(int /*t*/) const override { return blocks.data(); }
+  const double* Second(int /*t*/) const override { return blocks.data(); }
+  [[nodiscard]] MatrixXd Shared() const { return MatrixXd::Identity(s, s) * T; }
 };
 
 std::vector<char> CutsAt(int T, const std::vector<int>& at) {
@@ -236,6 +261,33 @@ TEST(ChainInverse, SameBytesForAnyNumberOfThreads) {
     factor.VisitInverse(0, 23, threads, [&](int t, const MatrixXd& P) { blocks[t] = P; });
     if (threads == 1) expected = blocks;
     for (int t = 0; t < 23; ++t) EXPECT_EQ(blocks[t], expected[t]) << threads;
+  }
+}
+
+TEST(ChainFactor, RowsThatAreComputedAgainHaveTheSameBits) {
+  // Longer than a block on both sides of the middle, with frames left over; and two segments.
+  for (const std::vector<int>& at : {std::vector<int>{}, {301}}) {
+    const int T = 2 * ChainFactor::kBlock * 2 + 37;
+    const ChainOfLongClip chain(T, 6, 3, CutsAt(T, at));
+    ChainFactor all(chain.n, chain.s, chain.cuts, 0, T), few(chain.n, chain.s, chain.cuts, 0, 20);
+    VectorXd x, shared, again, shared_again;
+    const VectorXd rhs = VectorXd::Constant(chain.s, 0.5);
+    ASSERT_TRUE(all.Solve(chain, chain.Shared(), rhs, 2, &x, &shared));
+    for (int threads : {1, 3}) {
+      ASSERT_TRUE(few.Solve(chain, chain.Shared(), rhs, threads, &again, &shared_again));
+      EXPECT_EQ(x, again);
+      EXPECT_EQ(shared, shared_again);
+    }
+    std::vector<MatrixXd> expected(T), blocks(T);
+    all.VisitInverse(0, T, 2, [&](int t, const MatrixXd& P) { expected[t] = P; });
+    few.VisitInverse(0, T, 2, [&](int t, const MatrixXd& P) { blocks[t] = P; });
+    EXPECT_EQ(expected, blocks);
+    int visited = 0;
+    few.VisitInverse(40, 45, 2, [&](int t, const MatrixXd& P) {
+      EXPECT_EQ(P, expected[t]);
+      ++visited;
+    });
+    EXPECT_EQ(visited, 5);
   }
 }
 
