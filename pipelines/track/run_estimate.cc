@@ -30,9 +30,8 @@ constexpr double kProductsS = 0.030;   ///< SecondsOfProducts()
 constexpr double kSharedTimes = 0.75;  ///< wall-clock time = processor time / threads to this power
 
 // Memory in bytes.
-constexpr double kBaseBytes = 330e6, kBytesOfPixel = 60;
-constexpr double kBytesOfPersonFrame = 31e3, kBytesOfMask = 90e3;
-constexpr double kBytesOfSolvedFrame = 60e3, kMostSolvedAtOnce = 2000;
+constexpr double kBaseBytes = 330e6, kBytesOfPixel = 60, kOverlayBytesOfPixel = 120;
+constexpr double kBytesOfPersonFrame = 45e3, kBytesOfMask = 180e3;
 
 double ProcessorSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -101,9 +100,9 @@ RunEstimate EstimateRun(const RunWork& work) {
   }
   for (const auto& [stage, seconds] : estimate.processor_seconds) estimate.seconds += seconds;
   estimate.seconds /= std::pow(work.threads, kSharedTimes);
-  estimate.peak_memory_bytes = static_cast<size_t>(kBaseBytes + kBytesOfPixel * 1e6 * megapixels +
-                                                   (kBytesOfPersonFrame + masked * kBytesOfMask) * people * frames +
-                                                   kBytesOfSolvedFrame * std::min(frames, kMostSolvedAtOnce));
+  const double bytes_of_pixel = kBytesOfPixel + (work.overlay ? kOverlayBytesOfPixel : 0);
+  estimate.peak_memory_bytes = static_cast<size_t>(kBaseBytes + bytes_of_pixel * 1e6 * megapixels +
+                                                   (kBytesOfPersonFrame + masked * kBytesOfMask) * people * frames);
   return estimate;
 }
 
