@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "geometry/base/check.h"
 #include "geometry/scene/camera_path.h"
@@ -49,9 +48,11 @@ StandingRun MakeRun(const std::vector<std::array<FootPlace, 2>>& feet, std::span
   return run;
 }
 
-std::vector<StandingRun> StandingRuns(const std::vector<std::array<FootPlace, 2>>& feet,
-                                      std::span<const double> timestamps, const std::vector<char>& cut_before,
-                                      std::span<const CameraPose> unit_path, const CameraScaleOptions& options) {
+using Feet = std::vector<std::array<FootPlace, 2>>;
+
+std::vector<StandingRun> StandingRuns(const Feet& feet, std::span<const double> timestamps,
+                                      const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
+                                      const CameraScaleOptions& options) {
   std::vector<StandingRun> runs;
   const size_t T = feet.size();
   for (int foot = 0; foot < 2; ++foot) {
@@ -93,16 +94,16 @@ Normal NormalOf(const StandingRun& run, double s, double kernel) {
   return normal;
 }
 
-/// Both feet over one step of time; a foot that is not seen at both ends has no offset.
+/// Points of both feet over one step of time, of those that are seen at both ends.
 struct Step {
-  std::array<std::optional<Offset>, 2> feet;
+  std::vector<Offset> points;
 };
 
-std::vector<Step> StepsOf(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+std::vector<Step> StepsOf(std::span<const Feet> points, std::span<const double> timestamps,
                           const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
                           const CameraScaleOptions& options) {
   std::vector<Step> steps;
-  const size_t T = feet.size();
+  const size_t T = timestamps.size();
   for (size_t begin = 0, end = 0; begin < T; ++begin) {
     bool is_cut = false;
     for (end = begin + 1; end < T && timestamps[end] - timestamps[begin] < options.step_s; ++end) {
@@ -111,31 +112,32 @@ std::vector<Step> StepsOf(const std::vector<std::array<FootPlace, 2>>& feet, std
     if (end >= T || is_cut || cut_before[end] != 0) continue;
     if (timestamps[end] - timestamps[begin] > options.step_s + kMaxRunStepS) continue;
     Step step;
-    for (int foot = 0; foot < 2; ++foot) {
-      const FootPlace &from = feet[begin][foot], &to = feet[end][foot];
-      if (!from.seen || !to.seen || !from.ankle_m.allFinite() || !to.ankle_m.allFinite()) continue;
-      // Each deviates from their mean by half of their distance, once before and once after.
-      const StandingRun run =
-          MakeRun({feet[begin], feet[end]}, std::array{unit_path[begin], unit_path[end]}, foot, 0, 2, options);
-      step.feet[foot] = Offset{std::sqrt(2.0) * run[0].a, std::sqrt(2.0) * run[0].b};
+    for (const Feet& feet : points) {
+      for (int foot = 0; foot < 2; ++foot) {
+        const FootPlace &from = feet[begin][foot], &to = feet[end][foot];
+        if (!from.seen || !to.seen || !from.ankle_m.allFinite() || !to.ankle_m.allFinite()) continue;
+        // Each deviates from their mean by half of their distance, once before and once after.
+        const StandingRun run =
+            MakeRun({feet[begin], feet[end]}, std::array{unit_path[begin], unit_path[end]}, foot, 0, 2, options);
+        step.points.push_back({std::sqrt(2.0) * run[0].a, std::sqrt(2.0) * run[0].b});
+      }
     }
-    if (step.feet[0] || step.feet[1]) steps.push_back(step);
+    if (!step.points.empty()) steps.push_back(std::move(step));
   }
   return steps;
 }
 
-/// The foot that moves less at scale s.
-const Offset& SlowerFoot(const Step& step, double s) {
-  if (!step.feet[1]) return *step.feet[0];
-  if (!step.feet[0]) return *step.feet[1];
-  const auto moves = [&](int foot) { return (step.feet[foot]->a + s * step.feet[foot]->b).squaredNorm(); };
-  return moves(0) <= moves(1) ? *step.feet[0] : *step.feet[1];
+/// The point that moves least at scale s.
+const Offset& SlowestPoint(const Step& step, double s) {
+  return *std::min_element(step.points.begin(), step.points.end(), [s](const Offset& a, const Offset& b) {
+    return (a.a + s * a.b).squaredNorm() < (b.a + s * b.b).squaredNorm();
+  });
 }
 
 double CostAt(const std::vector<Step>& steps, double s) {
   double cost = 0;
   for (const Step& step : steps) {
-    const Offset& e = SlowerFoot(step, s);
+    const Offset& e = SlowestPoint(step, s);
     cost += 0.5 * GemanMcClure((e.a + s * e.b).squaredNorm(), kScaleKernel).rho;
   }
   return cost;
@@ -159,8 +161,8 @@ CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_
   result.why = steps.empty() ? "no foot is seen" : "the feet do not tell it";
   std::vector<double> starts;
   for (size_t i = 0; i < steps.size(); i += 1 + steps.size() / kMaxStarts) {
-    for (const std::optional<Offset>& foot : steps[i].feet) {
-      if (foot && foot->b.squaredNorm() > 0) starts.push_back(-foot->a.dot(foot->b) / foot->b.squaredNorm());
+    for (const Offset& point : steps[i].points) {
+      if (point.b.squaredNorm() > 0) starts.push_back(-point.a.dot(point.b) / point.b.squaredNorm());
     }
   }
   double best = BestStart(steps, starts);
@@ -168,7 +170,7 @@ CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_
   const auto at = [&](double s, double kernel) {
     Normal sum;
     for (const Step& step : steps) {
-      const Normal normal = NormalOf({SlowerFoot(step, s)}, s, kernel);
+      const Normal normal = NormalOf({SlowestPoint(step, s)}, s, kernel);
       sum.H += normal.H;
       sum.g += normal.g;
     }
@@ -224,19 +226,26 @@ CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, const Came
 
 }  // namespace
 
-CameraScale EstimateCameraScale(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
+CameraScale EstimateCameraScale(std::span<const Feet> points, std::span<const double> timestamps,
                                 const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
                                 const CameraScaleOptions& options) {
-  BODYLOOM_CHECK(
-      feet.size() == timestamps.size() && feet.size() == cut_before.size() && feet.size() == unit_path.size(),
-      "camera scale: ", feet.size(), " frames of feet, ", timestamps.size(), " timestamps, ", cut_before.size(),
-      " cuts and ", unit_path.size(), " cameras, expected as many of each");
-  CameraScale named = ScaleOfStandingFeet(StandingRuns(feet, timestamps, cut_before, unit_path, options), options);
-  if (named.found || feet.size() < 2) return named;
-  const double seconds_a_frame = (timestamps.back() - timestamps.front()) / static_cast<double>(feet.size() - 1);
-  CameraScale unnamed =
-      ScaleOfUnnamedFeet(StepsOf(feet, timestamps, cut_before, unit_path, options), seconds_a_frame, options);
-  return unnamed.found ? unnamed : named;
+  std::vector<StandingRun> runs;
+  for (const Feet& feet : points) {
+    BODYLOOM_CHECK(
+        feet.size() == timestamps.size() && feet.size() == cut_before.size() && feet.size() == unit_path.size(),
+        "camera scale: ", feet.size(), " frames of feet, ", timestamps.size(), " timestamps, ", cut_before.size(),
+        " cuts and ", unit_path.size(), " cameras, expected as many of each");
+    const std::vector<StandingRun> of_point = StandingRuns(feet, timestamps, cut_before, unit_path, options);
+    runs.insert(runs.end(), of_point.begin(), of_point.end());
+  }
+  const CameraScale named = ScaleOfStandingFeet(runs, options);
+  if (timestamps.size() < 2) return named;
+  const double seconds_a_frame = (timestamps.back() - timestamps.front()) / static_cast<double>(timestamps.size() - 1);
+  const CameraScale unnamed =
+      ScaleOfUnnamedFeet(StepsOf(points, timestamps, cut_before, unit_path, options), seconds_a_frame, options);
+  if (!named.found || !unnamed.found) return unnamed.found ? unnamed : named;
+  if (named.sigma_m < options.sure_relative_sigma * named.scale_m) return named;
+  return unnamed.sigma_m * named.scale_m < named.sigma_m * unnamed.scale_m ? unnamed : named;
 }
 
 }  // namespace bodyloom

@@ -10,12 +10,14 @@
 /// (σ 12 cm). Each run's own least squares is a start; the start of minimum cost is refined by reweighting. A run
 /// counts as one measurement, because the errors of its frames are correlated.
 ///
-/// If that finds no scale (for a camera that follows somebody who walks, standing feet move backwards in the image,
-/// and the lifter predicts swinging ones), one of the two feet is assumed to stand at any time:
-///   min_s Σ_f ρ(min over feet of ‖W_f (q_g − q_f + s (c_g − c_f))‖²/2)      g: the first frame 0.2 s after f or later
-/// from the s of single feet and frames as starts; the last reweightings have c = 1, because neither foot stands during
-/// a change of feet, and all such steps bias s in one direction. The result is accepted when it saves a fifth of the
-/// cost at s = 0 and its σ is small enough; frames within 0.3 s count as one measurement.
+/// For a camera that follows somebody who walks, standing feet move backwards in the image, and the lifter predicts
+/// swinging ones. So in a second estimate one of the points of the two feet stands at any time, whichever it is (while
+/// a foot rolls, its ankle moves on, its heel and then its toes stand):
+///   min_s Σ_f ρ(min over points of ‖W_f (q_g − q_f + s (c_g − c_f))‖²/2)     g: the first frame 0.2 s after f or later
+/// from the s of single points and frames as starts; the last reweightings have c = 1, because neither foot stands
+/// during a change of feet, and all such steps bias s in one direction. The result is accepted when it saves a fifth of
+/// the cost at s = 0 and its σ is small enough; frames within 0.3 s count as one measurement. Of two results that with
+/// the smaller σ/s is returned, the first one where its σ/s is below 0.05.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,15 +43,17 @@ struct CameraScaleOptions {
   double across_m = 0.03, along_m = 0.12;  ///< σ of an ankle's position across the view and along it
   double min_run_s = 0.1;                  ///< shorter runs do not count
   double max_relative_sigma = 0.35;        ///< a scale with a larger σ is rejected
+  double sure_relative_sigma = 0.05;       ///< of runs of standing feet: the scale is theirs
   double step_s = 0.2;                     ///< between the frames over which one of the feet stands
   double correlation_s = 0.3;              ///< errors of frames nearer than that are correlated
   double min_gain = 0.2;                   ///< share of the cost at s = 0 that a scale from either foot must save
 };
 
-/// `feet`: ankles in the camera frame of their frame; `unit_path`: camera_from_scene at scale 1; `cut_before`: frames
-/// at which runs end. All have the same number of frames (checked).
-CameraScale EstimateCameraScale(const std::vector<std::array<FootPlace, 2>>& feet, std::span<const double> timestamps,
-                                const std::vector<char>& cut_before, std::span<const CameraPose> unit_path,
-                                const CameraScaleOptions& options = {});
+/// `points`: ankles, and other points of the feet of the same frames (toes, heels), in the camera frame of their frame;
+/// `unit_path`: camera_from_scene at scale 1; `cut_before`: frames at which runs end. All have the same number of
+/// frames (checked).
+CameraScale EstimateCameraScale(std::span<const std::vector<std::array<FootPlace, 2>>> points,
+                                std::span<const double> timestamps, const std::vector<char>& cut_before,
+                                std::span<const CameraPose> unit_path, const CameraScaleOptions& options = {});
 
 }  // namespace bodyloom

@@ -264,14 +264,19 @@ void ClipFit::FitCameraScale(SequenceProblem* coarse) {
     summary.why = "the lifter says which feet stand, and it does not run";
     return;
   }
-  std::vector<std::array<FootPlace, 2>> feet =
-      ObservedFeet(*coarse, coarse_frames_, lifted_.frames, lifted_landmarks_, *joints_);
-  std::vector<CameraPose> unit_path;
-  for (size_t i = 0; i < feet.size(); ++i) {
-    unit_path.push_back((*input_.camera_from_scene)[coarse_frames_[i]]);
-    for (FootPlace& foot : feet[i]) foot.ankle_m = MovedPoint(camera_path_[coarse_frames_[i]], foot.ankle_m);
+  std::vector<std::vector<std::array<FootPlace, 2>>> points;
+  for (const int left_point : {int{kLifterLeftAnkle}, int{kLifterLeftBigToe}, int{kLifterLeftHeel}}) {
+    if (!lifted_landmarks_.known[left_point]) continue;
+    points.push_back(ObservedFeet(*coarse, coarse_frames_, lifted_.frames, lifted_landmarks_, *joints_, left_point));
   }
-  const CameraScale scale = EstimateCameraScale(feet, coarse->timestamps, coarse->cut_before, unit_path);
+  std::vector<CameraPose> unit_path;
+  for (size_t i = 0; i < coarse_frames_.size(); ++i) {
+    unit_path.push_back((*input_.camera_from_scene)[coarse_frames_[i]]);
+    for (auto& feet : points) {
+      for (FootPlace& foot : feet[i]) foot.ankle_m = MovedPoint(camera_path_[coarse_frames_[i]], foot.ankle_m);
+    }
+  }
+  const CameraScale scale = EstimateCameraScale(points, coarse->timestamps, coarse->cut_before, unit_path);
   summary.why = scale.why;
   summary.scale_m = scale.found ? scale.scale_m : 0;
   summary.sigma_m = scale.found ? scale.sigma_m : 0;

@@ -255,8 +255,8 @@ constexpr float kSeenConfidence = 0.3F;
 
 std::vector<std::array<FootPlace, 2>> ObservedFeet(const SequenceProblem& problem, const std::vector<int>& frames,
                                                    const std::vector<LiftedFrame>& lifted,
-                                                   const LiftedLandmarks& landmarks,
-                                                   const KeypointSequence& keypoints) {
+                                                   const LiftedLandmarks& landmarks, const KeypointSequence& keypoints,
+                                                   int left_point) {
   std::array<int, 2> column{-1, -1};
   for (int foot = 0; foot < 2; ++foot) {
     const std::string& name = LifterPointNames()[kLifterLeftAnkle + foot];
@@ -272,8 +272,8 @@ std::vector<std::array<FootPlace, 2>> ObservedFeet(const SequenceProblem& proble
     kinematics.Set(*problem.layout.model, problem.betas, state.rotations, Eigen::Vector3d::Zero(), false);
     for (int foot = 0; foot < 2; ++foot) {
       FootPlace& place = feet[i][foot];
-      place.ankle_m = points.Evaluate(kinematics, landmarks.points[kLifterLeftAnkle + foot], false) +
-                      problem.layout.BodyPlace(state);
+      place.ankle_m =
+          points.Evaluate(kinematics, landmarks.points[left_point + foot], false) + problem.layout.BodyPlace(state);
       if (const CameraPose* camera = problem.frames[i].camera_from_scene; camera != nullptr) {
         place.camera_m = CentreOf(*camera);
       }

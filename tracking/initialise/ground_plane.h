@@ -18,6 +18,7 @@
 
 #include "geometry/scene/observations.h"
 #include "tracking/initialise/lifted_landmarks.h"
+#include "tracking/lifter/lifter_input.h"
 #include "tracking/lifter/lifter_reading.h"
 #include "tracking/problem/sequence_problem.h"
 
@@ -125,9 +126,11 @@ GroundPlane StandOnPlane(const std::vector<std::array<FootPlace, 2>>& feet, std:
 /// The feet in each frame of `problem`: ankle positions by the problem's states (for weak perspective at the distance
 /// of FrameLayout::BodyPlace), the lifter's contacts, and the camera's position. `frames` are the indices of the
 /// problem's frames in the clip, of which `lifted` and `keypoints` hold all frames. A foot is seen if the detector's
-/// confidence in its ankle suffices.
+/// confidence in its ankle suffices. `left_point`: in place of the ankles, the lifter's points left_point and
+/// left_point + 1, which the body must have.
 std::vector<std::array<FootPlace, 2>> ObservedFeet(const SequenceProblem& problem, const std::vector<int>& frames,
                                                    const std::vector<LiftedFrame>& lifted,
-                                                   const LiftedLandmarks& landmarks, const KeypointSequence& keypoints);
+                                                   const LiftedLandmarks& landmarks, const KeypointSequence& keypoints,
+                                                   int left_point = kLifterLeftAnkle);
 
 }  // namespace bodyloom

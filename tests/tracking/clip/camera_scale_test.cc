@@ -47,12 +47,18 @@ struct WalkBeside {
       unit_path.push_back(camera);
     }
   }
-  [[nodiscard]] CameraScale Estimate() const { return EstimateCameraScale(feet, timestamps, cut_before, unit_path); }
+  [[nodiscard]] CameraScale Estimate() const {
+    return EstimateCameraScale({&feet, 1}, timestamps, cut_before, unit_path);
+  }
 };
 
 TEST(CameraScale, IsExactWhereFeetStand) {
   for (const double scale : {0.3, 1.0, 7.5}) {
-    const CameraScale found = WalkBeside(scale).Estimate();
+    WalkBeside walk(scale);
+    for (auto& both : walk.feet) {
+      for (FootPlace& foot : both) foot.seen = foot.contact > 0.5;  // while feet swing neither may stand
+    }
+    const CameraScale found = walk.Estimate();
     ASSERT_TRUE(found.found) << found.why;
     EXPECT_NEAR(found.scale_m, scale, 1e-9 * scale);
     EXPECT_GT(found.sigma_m, 0);
@@ -77,6 +83,17 @@ TEST(CameraScale, OneOfTwoFeetStandsWhicheverItIs) {
     EXPECT_LT(found.sigma_m, 0.2 * scale);
     EXPECT_THAT(found.why, testing::HasSubstr("one of both feet"));
   }
+}
+
+TEST(CameraScale, OtherPointsOfTheFeetStandForAnklesThatAreNotSeen) {
+  WalkBeside walk(2);
+  const std::vector<std::array<FootPlace, 2>> toes = walk.feet;
+  for (auto& both : walk.feet) both[0].seen = both[1].seen = false;
+  EXPECT_FALSE(walk.Estimate().found);
+  const std::array<std::vector<std::array<FootPlace, 2>>, 2> points = {walk.feet, toes};
+  const CameraScale found = EstimateCameraScale(points, walk.timestamps, walk.cut_before, walk.unit_path);
+  ASSERT_TRUE(found.found) << found.why;
+  EXPECT_NEAR(found.scale_m, 2, 0.04);
 }
 
 TEST(CameraScale, FeetThatNeverStandTellNothing) {
@@ -110,7 +127,7 @@ TEST(CameraScale, SaysWhyThereIsNone) {
     barely.cut_before[t] = 1;
   }
   EXPECT_FALSE(barely.Estimate().found);
-  EXPECT_THROW(EstimateCameraScale(still.feet, still.timestamps, {}, still.unit_path), std::invalid_argument);
+  EXPECT_THROW(EstimateCameraScale({&still.feet, 1}, still.timestamps, {}, still.unit_path), std::invalid_argument);
 }
 
 }  // namespace
