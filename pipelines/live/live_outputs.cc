@@ -11,34 +11,31 @@
 #include "pipelines/live/live_server.h"
 
 namespace bodyloom {
-namespace {
-
-/// VMC, with its origin on the ground where the person was first.
-class VmcOutput {
- public:
-  explicit VmcOutput(const std::string& address) : sender_(address) {}
-
-  void Send(const LiveState& state) {
-    std::vector<VmcBone> bones;
-    if (state.HasPose()) {
-      const BodyPose pose = PoseInWorld(state.world, state.rest_joints.row(0).transpose(), state.pose);
-      if (!origin_) {
-        origin_ = state.rest_joints.row(0).transpose() + pose.trans;
-        origin_->y() = 0;
-      }
-      bones = VmcBones(*state.body, state.rest_joints, pose, *origin_);
-    }
-    sender_.Send(state.frame.timestamp, state.HasPose(), bones);
-  }
-
- private:
-  VmcSender sender_;
-  std::optional<Eigen::Vector3d> origin_;
-};
-
-}  // namespace
 
 struct LiveOutputs::Parts {
+  /// VMC, with its origin on the ground where the person was first.
+  class VmcOutput {
+   public:
+    explicit VmcOutput(const std::string& address) : sender_(address) {}
+
+    void Send(const LiveState& state) {
+      std::vector<VmcBone> bones;
+      if (state.HasPose()) {
+        const BodyPose pose = PoseInWorld(state.world, state.rest_joints.row(0).transpose(), state.pose);
+        if (!origin_) {
+          origin_ = state.rest_joints.row(0).transpose() + pose.trans;
+          origin_->y() = 0;
+        }
+        bones = VmcBones(*state.body, state.rest_joints, pose, *origin_);
+      }
+      sender_.Send(state.frame.timestamp, state.HasPose(), bones);
+    }
+
+   private:
+    VmcSender sender_;
+    std::optional<Eigen::Vector3d> origin_;
+  };
+
   std::function<void(const LiveState&)> on_frame;
   std::optional<VmcOutput> vmc;
   std::optional<LineWriter> lines;

@@ -9,6 +9,7 @@
 #include <deque>
 #include <exception>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -325,14 +326,14 @@ class LiveRun {
   }
 
   void SolveFrames() {
-    std::optional<LiveSolver> solver;
+    std::unique_ptr<LiveSolver> solver;
     const Stopwatch watch;
     while (std::optional<Landmarks> frame = landmarks_.Take()) {
-      if (solver && !solver->Fits(*frame)) {
+      if (solver != nullptr && !solver->Fits(*frame)) {
         for (const LiveState& state : solver->Finish()) Send(state);
         solver.reset();
       }
-      if (!solver) solver.emplace(request_, *frame);
+      if (solver == nullptr) solver = std::make_unique<LiveSolver>(request_, *frame);
       report_.width = frame->width;
       report_.height = frame->height;
       std::optional<LiveState> state = solver->Push(*frame);
@@ -340,7 +341,7 @@ class LiveRun {
       delays_.Add(state->delay_ms);
       if (!Send(std::move(*state))) return;
     }
-    if (!solver) return;
+    if (solver == nullptr) return;
     for (LiveState& state : solver->Finish()) Send(std::move(state));
     report_.seconds = watch.seconds();
   }

@@ -83,7 +83,7 @@ std::vector<PlanEntry> PlanOfViews(const TrackViewsRequest& request, const std::
   input.views = &others;
   std::vector<PlanEntry> plan = PlanTrackSequence(input, SolveOptionsOf(request, views[0].inputs));
   std::vector<HandsOfView> hands;
-  for (const ViewInputs& view : views) hands.push_back({{}, view.inputs.hands_and_face});
+  for (const ViewInputs& view : views) hands.emplace_back().seen = view.inputs.hands_and_face;
   ReplanHandsAndHead(PlanHandsInViews(*input.body, hands), &plan);
   if (request.detector.hands_and_faces == HandsAndFaceChoice::kOff) SkipHandsAndHead("switched off", &plan);
   for (size_t v = 1; v < views.size(); ++v) {

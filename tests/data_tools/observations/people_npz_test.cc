@@ -60,8 +60,11 @@ TEST(PeopleNpz, LoadDetectionsChoosesAPerson) {
   const KeypointSequence longest = LoadDetections(folder.File("p.npz"));
   EXPECT_EQ(longest.at(2, 0).x, 402);
   EXPECT_EQ(longest.at(1, 0).confidence, 0);
-  EXPECT_EQ(LoadDetections(folder.File("p.npz"), {.person = 1}).at(0, 0).x, 100);
-  EXPECT_THAT(FileErrorOf("p.npz", [&] { LoadDetections(folder.File("p.npz"), {.person = 2}); }),
+  LoadDetectionsOptions options;
+  options.person = 1;
+  EXPECT_EQ(LoadDetections(folder.File("p.npz"), options).at(0, 0).x, 100);
+  options.person = 2;
+  EXPECT_THAT(FileErrorOf("p.npz", [&] { LoadDetections(folder.File("p.npz"), options); }),
               HasSubstr("only 2 were found"));
 }
 

@@ -31,7 +31,10 @@ std::string Detection(double x, int track_id, size_t count = 17, bool has_confid
 }
 
 KeypointSequence Load(const std::string& text, int person = 0) {
-  return DetectionsFromBytes(text, "u.json", {.person = person, .fps = 10});
+  LoadDetectionsOptions options;
+  options.person = person;
+  options.fps = 10;
+  return DetectionsFromBytes(text, "u.json", options);
 }
 std::string ErrorOf(const std::string& text) {
   return FileErrorOf("u.json", [&] { Load(text); });
@@ -78,7 +81,9 @@ TEST(Ultralytics, AFolderOfImages) {
   WriteFileAtomically(folder.File("img_4.json"), "[" + Detection(300, -1) + "]");
   WriteFileAtomically(folder.File("img_10.json"), "[" + Detection(310, -1));
   std::vector<std::string> warnings;
-  const KeypointSequence sequence = LoadDetections(folder.File(""), {.fps = 10}, &warnings);
+  LoadDetectionsOptions options;
+  options.fps = 10;
+  const KeypointSequence sequence = LoadDetections(folder.File(""), options, &warnings);
   ASSERT_EQ(sequence.num_frames(), 8);
   ExpectStick(sequence, 1, 300);
   EXPECT_EQ(warnings.size(), 1U);

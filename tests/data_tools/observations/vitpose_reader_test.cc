@@ -43,7 +43,10 @@ std::string File(const std::string& frames, const std::vector<std::string>& name
   return R"({"keypoints":[)" + frames + R"(],"skeleton":{)" + skeleton + "}}";
 }
 KeypointSequence Load(const std::string& text, int person = 0) {
-  return DetectionsFromBytes(text, "v.json", {.person = person, .fps = 10});
+  LoadDetectionsOptions options;
+  options.person = person;
+  options.fps = 10;
+  return DetectionsFromBytes(text, "v.json", options);
 }
 std::string ErrorOf(const std::string& text) {
   return FileErrorOf("v.json", [&] { Load(text); });

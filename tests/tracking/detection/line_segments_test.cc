@@ -78,8 +78,7 @@ TEST(LineSegments, OfAMaskedPersonAreNotUsed) {
   FrameSamples samples;
   samples.Add(image);
   CoveredPixels covered;
-  LabelImage mask{.x_begin = 350, .y_begin = 120, .width = 200, .height = 200};
-  mask.labels.assign(200 * 200, 1);
+  const LabelImage mask{350, 120, 200, 200, std::vector<uint8_t>(200 * 200, 1)};
   CoverMask(mask, samples.small(), &covered);
   const std::vector<LineSegment> masked = FindLineSegments(MedianPicture(samples, std::vector<CoveredPixels>{covered}));
   EXPECT_EQ(NumInside(masked, 340, 110, 560, 330), 0);

@@ -101,7 +101,9 @@ TEST(FitHands, ChangesNothingButHandsAndForearms) {
           made.track.motion.poses.row(t).segment<3>(3 * j) == before.motion.poses.row(t).segment<3>(3 * j);
       EXPECT_TRUE(of_hand || same) << j;
       moved += same ? 0 : 1;
-      if (fingers.count(j) == 0) EXPECT_EQ(made.track.joints[t].row(j), before.joints[t].row(j)) << j;
+      if (fingers.count(j) == 0) {
+        EXPECT_EQ(made.track.joints[t].row(j), before.joints[t].row(j)) << j;
+      }
     }
     for (int k : {0, 5, 6, 11, 16}) EXPECT_EQ(made.track.coco17[t].row(k), before.coco17[t].row(k)) << k;
     const BodyPose pose =

@@ -40,7 +40,7 @@ class HandCosts : public testing::Test {
     cost.Evaluate(blocks.data(), without.data(), nullptr);
     EXPECT_EQ(without, probe.residuals);
     double slopes = 0;
-    for (const Eigen::MatrixXd& jacobian : probe.jacobians) slopes += jacobian.norm();
+    for (const auto& jacobian : probe.jacobians) slopes += jacobian.norm();
     EXPECT_GT(slopes, 0);
   }
   std::mt19937 random_{5};

@@ -25,7 +25,9 @@ struct TwoCameras {
     first.offset_s = 0;
     result.track = TrackSeenBy(first, BuiltinBodyWithHands(), seen_by_second.track);
     result.summary.status = SolveStatus::kConverged;
-    views = {{{}, seen_by_second.seen}, {second, seen_by_second.seen}};
+    views.resize(2);
+    views[1].camera = second;
+    for (HandsOfView& view : views) view.seen = seen_by_second.seen;
     for (size_t t = 0; t < 20; ++t) {
       auto left = std::make_shared<HandsAndFace>(*views[0].seen.frames[t]);
       left->hands[HandsAndFace::kRight].reset();

@@ -105,7 +105,7 @@ struct Recording {
   double begin_s = 0, length_s = 8, fps = 30, offset_s = 0;  ///< begin: by the true clock
   int drop_every = 0;                                        ///< every nth frame is missing
   double noise_m = 0;  ///< σ along the optical axis of errors that last for a third of a second; across it a third
-  CameraPose camera;
+  CameraPose camera = {};
 };
 
 CameraPose CameraAround(double yaw_deg, double distance_m = 4, double tilt = 0.1) {
