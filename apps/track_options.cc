@@ -96,7 +96,7 @@ void AddCameraPathOptions(CLI::App& app, TrackSettings* request) {
       ->group(kCamera)
       ->type_name("FILE");
   app.add_option("--camera-scale", c.camera_scale_m,
-                 "metres a unit of the path (default: 1 for JSON; COLMAP's is found from standing feet)")
+                 "metres a unit of the path (default: 1 for JSON in metres, else found from standing feet)")
       ->group(kCamera)
       ->type_name("M")
       ->check(Quiet(CLI::PositiveNumber));

@@ -54,6 +54,7 @@ void AddRunVerb(CLI::App& app, Action* action) {
       if (*json && !*plan) throw RequestError("--json is the form of --plan: summary.json is always written");
       const PipelineCallbacks callbacks = CommandCallbacks(*quiet || *json);
       if (*plan) {
+        if (HasSeveralVideos(*request)) throw RequestError("--plan estimates the run of one video: give one");
         const RunPlan estimate = PlanRun(RequestOfOneVideo(*request), callbacks);
         std::cout << (*json ? ToJson(estimate) : ToText(estimate));
         return;

@@ -29,7 +29,7 @@ struct CameraPathReport {
   bool goes = false;          ///< it goes from place to place; otherwise it turns in place
   double turned_deg = 0;      ///< largest rotation of a path that was found
   double sigma_deg = 0;       ///< largest standard deviation of its rotations, about an axis
-  double sigma_place = 0;     ///< median standard deviation of its places, as a share of the largest distance of two
+  double sigma_place = 0;     ///< median σ of its places, as a share of the largest distance from the first
   int background_points = 0;  ///< placed in space by the search
 
   [[nodiscard]] bool any() const { return found || !file.empty(); }

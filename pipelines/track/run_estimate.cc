@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "data_tools/body/builtin_body.h"
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "pipelines/report_json.h"
@@ -110,7 +111,8 @@ RunPlan PlanRun(const TrackPeopleClipRequest& request, const PipelineCallbacks& 
   CheckTrackPeopleRequest(request);
   CheckTrackSettings(request.track);
   RequireFiles(request.track, request.track.detector);
-  const TrackSettings track = WithTurn(request.track, callbacks);
+  TrackSettings track = WithTurn(request.track, callbacks);
+  track.detector.hands_and_faces = HandsFor(request, {}, *BodyOrBuiltin(track.body));
   RunPlan plan;
   RunWork& work = plan.work;
   {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipelines/track/track_request.h"
 
+#include <filesystem>
+
+#include "data_tools/formats/atomic_file.h"
 #include "data_tools/observations/keypoint_conventions.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/base/check.h"
@@ -42,6 +45,11 @@ void CheckTrackSettings(const TrackSettings& request) {
   }
   if (request.camera == "pinhole" && request.cameras.empty() && request.focal_px == 0 && request.camera_path.empty()) {
     throw RequestError("--camera pinhole needs the intrinsics: give --cameras FILE or --focal PIXELS");
+  }
+  const std::filesystem::path path_out(request.camera_path_out);
+  if (LowerExtension(request.camera_path_out) == ".txt" && path_out.filename() != "images.txt") {
+    throw RequestError("--camera-path-out " + request.camera_path_out +
+                       ": COLMAP's text is written as images.txt, with cameras.txt and points3D.txt beside it");
   }
   if (!request.camera_path_out.empty() &&
       (request.video.empty() || !request.find_camera_motion || !request.camera_path.empty())) {

@@ -639,6 +639,7 @@ class StructureSolve {
     const Matrix3d R = RotationFromAxisAngle(first.w);
     const auto moved = [&](const Vector3d& at) -> Vector3d { return R * (at - first.centre) / unit; };
     for (View& view : now_.views) {
+      view.sigma_place /= unit;
       if (!view.is_placed) continue;
       const bool is_first = view.camera.centre == first.centre;
       view.camera.w =
@@ -675,6 +676,8 @@ class StructureSolve {
     const std::vector<MatrixXd> covariances =
         CovariancesOf(&bundle.problem, blocks, bundle.points, variance, options_.num_threads);
     if (covariances.size() != blocks.size()) return false;
+    View& first = now_.views[keys.front()];
+    first.sigma_rad = first.sigma_place = 0;  // it is held
     for (size_t i = 0; i < views.size(); ++i) {
       View& view = now_.views[views[i]];
       const Matrix3d by_w = RightJacobian(view.camera.w);

@@ -48,7 +48,7 @@ struct BackgroundStructure {
   double median_px = 0;  ///< distance of pixels from projections, of points seen in three key frames or more
   double explained = 0;  ///< share of them within 1.5 pixels of a picture of 640
   double parallax = 0;   ///< median over the points of the largest angle between the first ray and another, rad
-  double extent = 0;     ///< largest distance of two centres from the first one, units
+  double extent = 0;     ///< largest distance of a centre from the first, units
 };
 
 /// Anchors that begin after a break are left out with all that follows: `frames` then end before it.

@@ -437,6 +437,7 @@ CameraMotion FindCameraMotion(const BackgroundTracks& tracks, const CameraMotion
   }
   if (!camera.solved) {
     motion.why = shift + "; no rotations explain it";
+    TakeStructure(tracks, options, &motion);
     return motion;
   }
   const PlacedFrames placed = PlacedBy(camera);

@@ -190,8 +190,9 @@ CameraScale ScaleOfUnnamedFeet(const std::vector<Step>& steps, double seconds_a_
   return result;
 }
 
-/// The first estimate of the header: runs of feet that the lifter calls standing.
-CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, const CameraScaleOptions& options) {
+/// The first estimate of the header: runs of feet that the lifter calls standing, of `num_points` points of each.
+CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, size_t num_points,
+                                const CameraScaleOptions& options) {
   CameraScale result;
   std::vector<double> starts;
   for (const StandingRun& run : runs) {
@@ -211,7 +212,7 @@ CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, const Came
       const Normal normal = NormalOf(run, best, kScaleKernel);
       sum.H += normal.H;
       sum.g += normal.g;
-      information += normal.H / static_cast<double>(run.size());
+      information += normal.H / static_cast<double>(run.size() * num_points);
     }
     if (!(sum.H > 0)) break;
     best = -sum.g / sum.H;
@@ -219,7 +220,7 @@ CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, const Came
   result.scale_m = best;
   result.sigma_m = information > 0 ? 1 / std::sqrt(information) : best;
   result.found = best > 0 && result.sigma_m <= options.max_relative_sigma * best;
-  result.why = result.found ? std::to_string(runs.size()) + " times that a foot stands"
+  result.why = result.found ? std::to_string((runs.size() + num_points - 1) / num_points) + " times that a foot stands"
                             : "the camera hardly moves while a foot stands";
   return result;
 }
@@ -238,7 +239,7 @@ CameraScale EstimateCameraScale(std::span<const Feet> points, std::span<const do
     const std::vector<StandingRun> of_point = StandingRuns(feet, timestamps, cut_before, unit_path, options);
     runs.insert(runs.end(), of_point.begin(), of_point.end());
   }
-  const CameraScale named = ScaleOfStandingFeet(runs, options);
+  const CameraScale named = ScaleOfStandingFeet(runs, std::max<size_t>(1, points.size()), options);
   if (timestamps.size() < 2) return named;
   const double seconds_a_frame = (timestamps.back() - timestamps.front()) / static_cast<double>(timestamps.size() - 1);
   const CameraScale unnamed =

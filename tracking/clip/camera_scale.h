@@ -8,7 +8,7 @@
 ///   min_s Σ_runs Σ_f ρ(‖W_f (q_f − q̄ + s (c_f − c̄))‖²)      ρ: Geman–McClure, c = 3
 /// q̄, c̄: means of the run; W_f: a single camera measures a foot across its view (σ 3 cm) better than along it
 /// (σ 12 cm). Each run's own least squares is a start; the start of minimum cost is refined by reweighting. A run
-/// counts as one measurement, because the errors of its frames are correlated.
+/// counts as one measurement, because the errors of its frames are correlated, and the points of a foot count as one.
 ///
 /// For a camera that follows somebody who walks, standing feet move backwards in the image, and the lifter predicts
 /// swinging ones. So in a second estimate one of the points of the two feet stands at any time, whichever it is (while

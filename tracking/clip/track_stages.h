@@ -21,7 +21,7 @@ struct Stage {
   double from, to;          ///< of the whole run, for progress
   bool in_windows = false;  ///< a long clip's frames are solved in windows (kChainFramesAtOnce)
 };
-/// A solve of some frames at once takes memory for each: chain 60 KB and Ceres 300 KB (docs/lab/run_speed.md,
+/// A solve of some frames at once takes memory for each: chain some 100 KB and Ceres 310 KB (docs/lab/run_speed.md,
 /// "Memory"). Clips of more than `whole` frames are therefore solved in overlapping windows once the coarse frames have
 /// told shape and focal length.
 struct FramesAtOnce {

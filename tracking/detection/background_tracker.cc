@@ -299,6 +299,7 @@ class BackgroundTracker::Impl {
     Revive(frame, tracks_.anchors.back().points, seen_, &living);
     CloseLoops(frame, target, &living);
     KeepForLoops();
+    ThinKept();
     BeginAnchor(frame, target, false, living);
   }
 
@@ -307,6 +308,7 @@ class BackgroundTracker::Impl {
     NamedPoints living;
     KeepForLoops();
     const int found = CloseLoops(frame, target, &living);
+    ThinKept();
     BeginAnchor(frame, target, found == 0, living);
   }
 
@@ -336,11 +338,17 @@ class BackgroundTracker::Impl {
   /// The anchor that ends is kept.
   void KeepForLoops() {
     if (tracks_.anchors.empty() || corners_.size() < size_t(kFewestTracked)) return;
-    if (kept_.size() == kMostKept) {
-      for (size_t i = 1; 2 * i < kept_.size(); ++i) kept_[i] = std::move(kept_[2 * i]);
-      kept_.resize(kMostKept / 2);
-    }
     kept_.push_back({tracks_.anchors.size() - 1, std::move(pyramid_), corners_});
+  }
+
+  /// Drops every other one but the latest when there are too many.
+  void ThinKept() {
+    if (kept_.size() <= kMostKept) return;
+    Kept latest = std::move(kept_.back());
+    kept_.pop_back();
+    for (size_t i = 1; 2 * i < kept_.size(); ++i) kept_[i] = std::move(kept_[2 * i]);
+    kept_.resize(kMostKept / 2);
+    kept_.push_back(std::move(latest));
   }
 
   /// Returns true if half of the points of an anchor, the latest or one that is kept, are in the frame.

@@ -28,8 +28,9 @@
 
 namespace bodyloom {
 
-/// Implements SolveSequence() for the chain engine. `held`: T flags of frames that keep their states, no single ones;
-/// with any, the shared values keep theirs too. Empty: none.
+/// Implements SolveSequence() for the chain engine. `held`: T flags of frames that keep their states; between frames
+/// that move at least two in a row are held, as accelerations couple three. With any, the shared values keep theirs,
+/// too. Empty: none.
 SolveReport SolveChain(SequenceProblem* problem, const SolveOptions& options, const std::vector<char>& held = {});
 
 /// Runs the iterations from `x`, which holds the best point afterwards (also after a failure). Linearisations already

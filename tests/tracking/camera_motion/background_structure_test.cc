@@ -238,7 +238,7 @@ TEST(BackgroundStructure, WhatIsNoSceneHasNoPath) {
   scene.wanderers = 0;
   scene.frames = 2;
   const BackgroundStructure two = ReconstructBackground(TracksOf(scene), KnownFocal(scene));
-  EXPECT_FALSE(two.solved && two.frames.size() > 2);
+  EXPECT_FALSE(two.solved) << two.parallax / kDegree;
   BackgroundTracks nothing;
   nothing.width = 64, nothing.height = 48;
   const BackgroundStructure none = ReconstructBackground(nothing, KnownFocal(scene));
