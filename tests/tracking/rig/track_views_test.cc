@@ -112,7 +112,8 @@ TEST(TrackViews, AMovingCameraWhosePathHasNoMetre) {
   views[1].camera_scale_m = 0;
   const TrackViewsResult result = SyntheticRig::Track(views);
   ExpectBetterThanAlone(rig, result, 1.5);
-  EXPECT_LE(rig.RotationErrorDeg(result.joint.summary.views.at(0), 1), 2.5);
+  // The metre from one camera's feet has a standard deviation of 15 % here, and a path that is short turns the view.
+  EXPECT_LE(rig.RotationErrorDeg(result.joint.summary.views.at(0), 1), 3);
 }
 
 /// Lenses of one kind: the focal length that one view tells better is the other's.
