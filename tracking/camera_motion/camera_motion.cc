@@ -30,7 +30,8 @@ constexpr double kMovedPx = 1, kRestsPx = 0.6;  ///< small pixels
 constexpr double kMovedShare = 0.6, kRestsShare = 0.25, kTogether = 0.5;
 constexpr double kMinExplained = 0.7, kMaxZoom = 1.04;
 constexpr double kMinInSpace = 0.65, kLeastParallax = 0.3 * kDegree, kMostOff = 1.0 / 3;
-constexpr double kMaxGapS = 1;  ///< CameraPathLimits::max_gap_s
+constexpr double kUnexplainedShare = 0.5;  ///< of a zoom's, left by a path instead
+constexpr double kMaxGapS = 1;             ///< CameraPathLimits::max_gap_s
 
 void Check(const BackgroundTracks& tracks) {
   const auto frames = static_cast<int>(tracks.timestamps.size());
@@ -328,30 +329,31 @@ double Tenths(double value) { return std::round(10 * value) / 10; }
 double Percent(double share) { return std::floor(100 * share); }
 
 /// The path of a camera that goes from place to place, if the background's structure explains what is seen; the
-/// evidence, or why there is no path, is added to motion.why.
-void TakeStructure(const BackgroundTracks& tracks, const CameraMotionOptions& options, CameraMotion* motion) {
+/// evidence, or why there is no path, is added to motion.why. Returns the share of the points that a path explains; 0:
+/// there is none.
+double TakeStructure(const BackgroundTracks& tracks, const CameraMotionOptions& options, CameraMotion* motion) {
   const BackgroundStructure structure = ReconstructBackground(
       tracks, {.focal = options.focal, .focal_known = options.focal_known, .num_threads = options.num_threads});
   if (!structure.solved) {
     motion->why += "; no path: " + structure.why;
-    return;
+    return 0;
   }
   motion->why +=
       Concatenate("; ", structure.points.size(), " points in space explain ", Percent(structure.explained), " %");
   const double off = Percentile(structure.sigma_place, 50);
-  if (structure.explained < kMinInSpace || structure.points.size() < size_t(kFewestPoints)) return;
+  if (structure.explained < kMinInSpace || structure.points.size() < size_t(kFewestPoints)) return 0;
   if (structure.parallax < kLeastParallax) {
     motion->why += ", with too little parallax for a path";
-    return;
+    return 0;
   }
   if (off > kMostOff * structure.extent) {
     motion->why +=
         Concatenate(", its place within ", Percent(off / structure.extent), " % of its way, too little for a path");
-    return;
+    return 0;
   }
   if (const double gap = LongestGap(tracks, structure.frames); gap > kMaxGapS) {
     motion->why += Concatenate(", and are not seen for ", Tenths(gap), " s");
-    return;
+    return 0;
   }
   motion->turned_deg = TurnedDeg(structure.camera_from_first);
   motion->extent = structure.extent;
@@ -359,6 +361,7 @@ void TakeStructure(const BackgroundTracks& tracks, const CameraMotionOptions& op
   motion->log_focal = structure.log_focal;
   motion->log_focal_sigma = structure.log_focal_sigma;
   TakePath(tracks, {structure.frames, structure.camera_from_first, structure.sigma_rad, structure.sigma_place}, motion);
+  return structure.explained;
 }
 
 }  // namespace
@@ -448,6 +451,14 @@ CameraMotion FindCameraMotion(const BackgroundTracks& tracks, const CameraMotion
     motion.why = Concatenate(shift, "; rotations explain ", Percent(camera.explained), " % of the points");
     TakeStructure(tracks, options, &motion);
     return motion;
+  }
+  if (motion.zoom > 1) {
+    // A camera that goes towards things looks like one that zooms, but for their depth.
+    CameraMotion goes = motion;
+    goes.zoom = 1;
+    goes.why = Concatenate(shift, "; rotations and a zoom explain ", Percent(camera.explained), " % of the points");
+    const double in_space = TakeStructure(tracks, options, &goes);
+    if (1 - in_space < kUnexplainedShare * (1 - camera.explained)) return goes;
   }
   if (const double gap = LongestGap(tracks, placed.frames); gap > kMaxGapS) {
     motion.why = Concatenate(shift, ", and is not seen for ", Tenths(gap), " s");

@@ -12,6 +12,7 @@
 /// Torr's criterion (GRIC, "An assessment of information criteria for motion model selection", 1997), which counts
 /// what its parameters may explain by chance:
 ///   Σ min(e²/σ², 2 (4 − d)) + n d log 4 + k log 4n   d = 2, k = 3: a rotation;  d = 3, k = 7: an epipolar geometry
+/// A zoom is a path instead if points in space leave half as many unexplained.
 /// *Moving*: anything else that moves. Its path is that of background_structure.h where that explains a share of 0.65
 /// of the points seen in three key frames or more within 1.5 small pixels, under a median angle of 0.3° at least, with
 /// centres whose deviation (median) is at most a third of the path's extent. *Unknown*: fewer than 16 points of

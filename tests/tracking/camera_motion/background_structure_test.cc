@@ -251,6 +251,21 @@ TEST(BackgroundStructure, WhatIsNoSceneHasNoPath) {
   EXPECT_FALSE(turning.solved) << turning.parallax / kDegree;
 }
 
+/// From anchor to anchor a zoom explains nearly all of a camera that goes towards things of like depth.
+TEST(BackgroundStructure, ACameraThatGoesTowardsThingsDoesNotZoom) {
+  SyntheticBackground scene = Room();
+  scene.noise_px = 0.3;
+  scene.nearest_m = 4;
+  scene.farthest_m = 5;
+  scene.frames_of_anchor = 5;
+  scene.pose = Forwards;
+  const CameraMotion motion = FindCameraMotion(TracksOf(scene), {.focal = KnownFocal(scene).focal});
+  EXPECT_EQ(motion.kind, CameraMotionKind::kMoving) << motion.why;
+  EXPECT_TRUE(motion.has_path()) << motion.why;
+  EXPECT_EQ(motion.zoom, 1);
+  EXPECT_NE(motion.why.find("rotations and a zoom explain 98 %"), std::string::npos) << motion.why;
+}
+
 TEST(BackgroundStructure, AnEndThatIsNotSeenHasALargerDeviation) {
   SyntheticBackground scene = Room();
   scene.noise_px = 0.3;
