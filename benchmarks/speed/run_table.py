@@ -6,7 +6,7 @@ pixels.
 usage: run_table.py COMMAND DATA [--rounds N] [--only WORD] [--json F] [--markdown F] [--plot F] [--scratch FOLDER]
   COMMAND   the program `bodyloom` of a build; run it with `nice -n -20` where others use the machine
   DATA      the folder of real recordings (shared/data)
-  --only    sections whose name contains the word: table, frames, people, pixels, length
+  --only    rows whose section (table, frames, people, pixels, length) or clip contains the words
   --scratch where videos are made and kept (default: a folder that is removed)
 
 Every row is a `run` with the arguments beside it, all rows in turn in each round; medians, and half the range as spread.
@@ -165,7 +165,7 @@ def main():
     with tempfile.TemporaryDirectory() as removed:
         scratch = o.scratch or pathlib.Path(removed)
         scratch.mkdir(parents=True, exist_ok=True)
-        rows = [row for row in rows_of(Videos(o.data, scratch)) if o.only in row[0]]
+        rows = [row for row in rows_of(Videos(o.data, scratch)) if o.only in row[0] or o.only in row[1]]
         results = [{"section": s, "label": label, "x": x, "arguments": a, "runs": []} for s, label, x, _, a in rows]
         for number in range(o.rounds):
             for (_, label, _, video, arguments), result in zip(rows, results):
