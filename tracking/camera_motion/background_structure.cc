@@ -73,17 +73,16 @@ struct ScenePoint {
   std::vector<std::pair<int, int>> in_views;  ///< key view, index of the glimpse
 };
 
-/// Two views that share points.
+/// Pixels of the points that two views share.
 struct CommonPoints {
   std::vector<Vector2d> first, second;
-  std::vector<int> points;
+  [[nodiscard]] size_t size() const { return first.size(); }
 };
 CommonPoints CommonOf(const View& a, const View& b) {
   CommonPoints common;
   for (size_t i = 0, j = 0; i < a.glimpses.size() && j < b.glimpses.size();) {
     const int first = a.glimpses[i].point, second = b.glimpses[j].point;
     if (first == second) {
-      common.points.push_back(first);
       common.first.push_back(a.glimpses[i].pixel);
       common.second.push_back(b.glimpses[j].pixel);
     }
@@ -95,7 +94,7 @@ CommonPoints CommonOf(const View& a, const View& b) {
 
 double MedianWay(const CommonPoints& common) {
   std::vector<double> ways;
-  for (size_t i = 0; i < common.first.size(); ++i) ways.push_back((common.second[i] - common.first[i]).norm());
+  for (size_t i = 0; i < common.size(); ++i) ways.push_back((common.second[i] - common.first[i]).norm());
   return ways.empty() ? std::numeric_limits<double>::infinity() : Percentile(ways, 50);
 }
 
@@ -314,8 +313,7 @@ class StructureSolve {
       for (size_t step = 1; first + step < keys_.size(); step += 1 + step / 2) {
         const size_t second = first + step;
         const CommonPoints common = CommonOf(a, now_.views[keys_[second]]);
-        if (common.points.size() < kFewestCommon ||
-            double(common.points.size()) < kCommonShare * double(a.glimpses.size())) {
+        if (common.size() < kFewestCommon || double(common.size()) < kCommonShare * double(a.glimpses.size())) {
           break;
         }
         std::optional<StartPair> pair = PlaceOfPair(common, focal, small_px_);
