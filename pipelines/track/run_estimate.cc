@@ -57,7 +57,8 @@ TrackSettings Beginning(TrackSettings track, double seconds) {
   return track;
 }
 
-/// Several people are fitted with the focal length and the ground of all again; what hides them costs as much as a fit.
+/// Several people are fitted again, without masks but in the last fit, with the focal length and the ground of all; finding
+/// what hides them costs as much as a fit without masks.
 int NumFits(const RunWork& work) { return work.people_px.size() > 1 ? 4 : 1; }
 
 std::string BriefReport(const RunPlan& plan) {
@@ -83,16 +84,17 @@ RunEstimate EstimateRun(const RunWork& work) {
                  " a second, expected positive numbers");
   const double frames = work.num_frames, megapixels = 1e-6 * work.width * work.height;
   const double masked = work.masks ? std::min(1.0, kMasksPerSecond / work.fps) : 0;
-  double track_s = 0;
+  double joints_s = 0, masks_s = 0;
   for (const double height_px : work.people_px) {
     const double size = 1e-3 * height_px;
-    track_s += kJointsFrameS + masked * (kMaskFrameS + kMaskPixelFrameS * size * size);
+    joints_s += kJointsFrameS;
+    masks_s += masked * (kMaskFrameS + kMaskPixelFrameS * size * size);
   }
   const double people = static_cast<double>(work.people_px.size());
   RunEstimate estimate;
   estimate.processor_seconds = {
       {"detect", work.detect_start_s + frames * work.detect_s},
-      {"track", work.machine * (kStartS + NumFits(work) * frames * track_s)},
+      {"track", work.machine * (kStartS + frames * (NumFits(work) * joints_s + masks_s))},
   };
   if (work.overlay) {
     estimate.processor_seconds.emplace_back(

@@ -28,6 +28,7 @@ struct OwnObservations {
     if (input.dense != nullptr) dense = *input.dense;
     if (input.part_labels != nullptr) part_labels = *input.part_labels;
   }
+  [[nodiscard]] bool has_masks() const { return part_labels.has_value(); }
   [[nodiscard]] PersonInScene InScene(const BodyModel* body, const TrackSequenceResult& result) {
     return {.body = body,
             .track = result.summary.IsUsable() ? &result.track : nullptr,
@@ -127,6 +128,12 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
       FitHandsAndHead(people[i], ThreadsFor(options.num_threads), &fitted->people[i]);
     }
   };
+  std::vector<OwnObservations> own;
+  if (!alone) {
+    for (const TrackSequenceInput& person : people) own.emplace_back(person);
+    // Masks cost most of a fit and tell hardly anything of the focal length and the ground, so the last fit has them alone.
+    for (TrackSequenceInput& person : people) person.part_labels = nullptr;
+  }
   TrackPeopleResult result;
   result.summary.hidden.resize(n);
   result.summary.fitted_again.resize(n, 0);
@@ -145,15 +152,15 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
     return result;
   }
 
-  std::vector<OwnObservations> own(people.begin(), people.end());
   std::vector<PersonInScene> in_scene;
   for (size_t i = 0; i < n; ++i) in_scene.push_back(own[i].InScene(people[i].body, result.people[i]));
   const int threads = ThreadsFor(options.num_threads);
   result.summary.hidden = DownweightOccluded(in_scene, threads);
 
   const bool shares_focal = unknown_focal && scene.focal_px > 0;
-  const auto fit_again = [&](size_t i) {
+  const auto fit_again = [&](size_t i, bool with_masks) {
     own[i].CopyTo(&people[i]);
+    if (!with_masks) people[i].part_labels = nullptr;
     if (shares_focal) people[i].camera = MakePinhole(width, height, scene.focal_px);
     TrackSequenceResult again =
         FitPerson(people[i], shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge, &fits);
@@ -164,7 +171,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   if (shares_focal && NumStanding(result.people) >= 2) {
     // The positions of feet depend on the focal length, so they are compared after everybody has the same one.
     for (size_t i = 0; i < n && !fits.stopped(); ++i) {
-      if (result.people[i].summary.IsUsable()) fit_again(i);
+      if (result.people[i].summary.IsUsable()) fit_again(i, false);
     }
     const double log_sigma = scene.focal_log_sigma;
     scene = Join(result.people, focal_prior, options);
@@ -174,12 +181,12 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
     TrackSequenceInput& person = people[i];
     if (!result.people[i].summary.IsUsable()) continue;
     const bool shares_ground = scene.has_up && person.ground == nullptr;
-    if (!shares_focal && !shares_ground && !result.summary.hidden[i].any()) continue;
+    if (!shares_focal && !shares_ground && !result.summary.hidden[i].any() && !own[i].has_masks()) continue;
     if (shares_ground) {
       person.ground = &scene.ground;
       if (scene.size[i] != 1) person.stature_m = scene.size[i] * AssumedStature(person);
     }
-    fit_again(i);
+    fit_again(i, true);
   }
   for (size_t i = 0; i < n; ++i) {
     if (shares_focal && result.summary.fitted_again[i] != 0) {

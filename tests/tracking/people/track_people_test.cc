@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -259,6 +261,55 @@ TEST(TrackPeople, FocalLengthsWhoseSpreadIsNotKnownAreNotTakenForKnownOnes) {
   for (const TrackSequenceResult& person : together.people) {
     EXPECT_TRUE(std::isnan(person.summary.focal_log_sigma));
     EXPECT_GT(person.track.camera.fx, 0);
+  }
+}
+
+/// A rectangle of the person's keypoints in every frame.
+PartLabelSequence MasksOf(const SynthClip& clip) {
+  PartLabelSequence masks;
+  masks.timestamps = clip.keypoints.timestamps;
+  masks.image_width = clip.truth.camera.width;
+  masks.image_height = clip.truth.camera.height;
+  const Eigen::AlignedBox2d whole(Eigen::Vector2d(1, 1),
+                                  Eigen::Vector2d(masks.image_width - 2, masks.image_height - 2));
+  for (int t = 0; t < clip.keypoints.num_frames(); ++t) {
+    Eigen::AlignedBox2d box;
+    for (int k = 0; k < clip.keypoints.num_points(); ++k) {
+      const Keypoint& point = clip.keypoints.at(t, k);
+      if (point.confidence > 0) box.extend(Eigen::Vector2d(point.x, point.y));
+    }
+    box = box.intersection(whole);
+    const Eigen::Vector2i min = box.min().cast<int>(), size = box.sizes().cast<int>();
+    LabelImage image{min.x(), min.y(), size.x(), size.y(), {}};
+    image.labels.assign(static_cast<size_t>(size.prod()), 1);
+    masks.frames.emplace_back(image);
+  }
+  masks.AsMask();
+  return masks;
+}
+
+TEST(TrackPeople, MasksAreInEverybodysLastFit) {
+  // Known camera, no vertical and ground, and one person after the other: masks alone ask for a second fit.
+  SynthClip a = Clip(1), b = Clip(2);
+  for (double& time : b.keypoints.timestamps) time += 100;
+  const PartLabelSequence masks_a = MasksOf(a), masks_b = MasksOf(b);
+  std::vector<TrackSequenceInput> people = {InputOf(a), InputOf(b)};
+  people[0].part_labels = &masks_a;
+  people[1].part_labels = &masks_b;
+  for (TrackSequenceInput& person : people) {
+    person.camera = a.truth.camera;
+    person.lifter = nullptr;
+  }
+  TrackSequenceOptions options = Options();
+  options.camera_knowledge = CameraKnowledge::kKnown;
+  options.ground = GroundOptions::Off();
+  const TrackPeopleResult result = TrackPeople(people, options);
+  for (size_t i = 0; i < 2; ++i) {
+    ASSERT_TRUE(result.people[i].summary.IsUsable());
+    EXPECT_EQ(result.summary.fitted_again[i], 1);
+    const auto& costs = result.people[i].summary.costs;
+    EXPECT_TRUE(
+        std::any_of(costs.begin(), costs.end(), [](const TermCost& cost) { return cost.term == "silhouette"; }));
   }
 }
 
