@@ -100,7 +100,7 @@ double PathError(const std::vector<CameraPose>& found, const std::vector<CameraP
 
 /// One row: the clip tracked with this path (or none). `unit_m`: metres a unit of a path of unknown scale.
 std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<CameraPose>* path, double scale_m,
-                                    double unit_m) {
+                                    double unit_m, const std::vector<Eigen::Vector3d>* points) {
   TrackSequenceInput input;
   input.body = &BuiltinBody();
   input.prior = &BuiltinPosePrior();
@@ -109,6 +109,7 @@ std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<Cam
   input.camera = clip.truth.camera;
   input.camera_from_scene = path;
   input.camera_scale_m = scale_m;
+  input.background_points = points;
   TrackSequenceOptions options;
   options.estimate_uncertainty = false;
   const TrackSequenceResult result = FitClip(input, options);
@@ -172,6 +173,7 @@ BackgroundTracks RoomPoints(const SynthClip& clip, RoomKind kind, uint64_t seed,
 struct FoundPath {
   std::vector<CameraPose> poses;
   double unit_m = 0;
+  std::vector<Eigen::Vector3d> points = {};
 };
 FoundPath FindPath(const SynthClip& clip, const BackgroundTracks& background) {
   const Camera& camera = clip.truth.camera;
@@ -181,7 +183,7 @@ FoundPath FindPath(const SynthClip& clip, const BackgroundTracks& background) {
   const CameraMotion motion = FindCameraMotion(background, options);
   std::fprintf(stderr, "%s: %s\n", ToString(motion.kind).c_str(), motion.why.c_str());
   if (!motion.has_path() || motion.zoom > 1) return {};
-  FoundPath found{SampleCameraPath(motion.path, clip.truth.motion.timestamps).camera_from_scene, 0};
+  FoundPath found{SampleCameraPath(motion.path, clip.truth.motion.timestamps).camera_from_scene, 0, motion.points};
   const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
   if (motion.kind == CameraMotionKind::kMoving && !path.empty()) {
     found.unit_m = Eigen::umeyama(Centres(found.poses), Centres(path), true).col(0).head<3>().norm();
@@ -209,9 +211,10 @@ void Run(const BenchArguments& arguments, const std::string& command) {
         const SynthClip clip = MakeSynthClip(BuiltinBody(), motion, options);
         const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
         const auto add = [&](const std::string& told, const std::vector<CameraPose>* given, double scale_m,
-                             double unit_m = kUnit) {
-          report.rows.push_back(
-              {camera + ", " + told, {name, std::to_string(seed)}, TrackAndMeasure(clip, given, scale_m, unit_m)});
+                             double unit_m = kUnit, const std::vector<Eigen::Vector3d>* points = nullptr) {
+          report.rows.push_back({camera + ", " + told,
+                                 {name, std::to_string(seed)},
+                                 TrackAndMeasure(clip, given, scale_m, unit_m, points)});
           std::fprintf(stderr, "%s %s %d %s\n", camera.c_str(), name.c_str(), seed, told.c_str());
         };
         add("none", nullptr, 1);
@@ -225,7 +228,8 @@ void Run(const BenchArguments& arguments, const std::string& command) {
         const FoundPath found =
             FindPath(clip, room == "points" ? BackgroundPoints(clip, options.seed)
                                             : RoomPoints(clip, RoomKindFromString(room), options.seed, video));
-        add("found", found.poses.empty() ? nullptr : &found.poses, found.unit_m > 0 ? 0 : 1, found.unit_m);
+        add("found", found.poses.empty() ? nullptr : &found.poses, found.unit_m > 0 ? 0 : 1, found.unit_m,
+            found.unit_m > 0 ? &found.points : nullptr);
         if (path.empty()) continue;
         add("path", &path, 1);
         const std::vector<CameraPose> unit = ScaledPath(path, 1 / kUnit), turned = ScaledPath(path, 0),

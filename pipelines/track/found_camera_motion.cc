@@ -123,6 +123,7 @@ void UseCameraMotion(const TrackSettings& request, const BackgroundTracks& backg
   }
   if (zooms) return;
   scene->camera_path = std::move(path);
+  scene->background_points = motion.points;
   report->found = true;
   report->goes = goes;
   report->turned_deg = motion.turned_deg;

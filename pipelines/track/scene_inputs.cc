@@ -82,6 +82,7 @@ TrackSequenceInput SceneInputs::ForTracker() const {
   input.lifter = lifter ? &*lifter : nullptr;
   input.camera = camera.camera;
   input.stature_m = stature_m;
+  if (!background_points.empty()) input.background_points = &background_points;
   if (focal_35mm_mm > 0 && camera.camera.width > 0) {
     input.focal_prior =
         FocalPrior::ForLens(camera.camera.width, camera.camera.height, focal_35mm_mm, focal_35mm_log_sigma);

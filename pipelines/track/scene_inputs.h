@@ -35,6 +35,8 @@ struct SceneInputs {
   std::optional<LifterWeights> lifter;
   NamedCamera camera;  ///< intrinsics, pose and map to the video's pixels, as far as known (UseFocal)
   std::optional<RecordedCameraPath> camera_path;  ///< of a moving camera
+  /// The background in the frame of the path's first pose, its units; empty: the path was not found in the video.
+  std::vector<Eigen::Vector3d> background_points;
   CameraKnowledge camera_knowledge = CameraKnowledge::kKnown;
   double focal_35mm_mm = 0;         ///< of the lens, from the request or the video's metadata; 0: unknown
   double focal_35mm_log_sigma = 0;  ///< standard deviation of log(focal length)

@@ -34,6 +34,7 @@
 #include "tracking/solvers/residuals/acceleration_cost.h"
 #include "tracking/solvers/term_costs.h"
 #include "tracking/terms/dense/dense.h"
+#include "tracking/terms/ground_contact/clip_ground.h"
 #include "tracking/terms/observability.h"
 #include "tracking/terms/surface_contact/clip_contacts.h"
 
@@ -59,6 +60,9 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
 
 /// σ of adults' stature, metres: of a person whose size cameras at known places measure.
 constexpr double kStatureSpreadM = 0.1;
+
+/// Above the floor, of the lifter's points of a foot that stands flat, metres.
+constexpr double kToeHeight = 0.02, kHeelHeight = 0.03;
 
 /// Widens the kernels of dense keypoints for starts from hypotheses. Errors of hypotheses are proportional to the body,
 /// while a dense keypoint's σ is in pixels: in a large image all keypoints would be outliers at the start. (Starts from
@@ -265,8 +269,12 @@ void ClipFit::FitCameraScale(SequenceProblem* coarse) {
     return;
   }
   std::vector<std::vector<std::array<FootPlace, 2>>> points;
-  for (const int left_point : {int{kLifterLeftAnkle}, int{kLifterLeftBigToe}, int{kLifterLeftHeel}}) {
+  std::vector<double> heights_m;
+  for (const auto& [left_point, height_m] :
+       {std::pair{int{kLifterLeftAnkle}, kAnkleHeight}, std::pair{int{kLifterLeftBigToe}, kToeHeight},
+        std::pair{int{kLifterLeftHeel}, kHeelHeight}}) {
     if (!lifted_landmarks_.known[left_point]) continue;
+    heights_m.push_back(height_m);
     points.push_back(ObservedFeet(*coarse, coarse_frames_, lifted_.frames, lifted_landmarks_, *joints_, left_point));
   }
   std::vector<CameraPose> unit_path;
@@ -276,7 +284,12 @@ void ClipFit::FitCameraScale(SequenceProblem* coarse) {
       for (FootPlace& foot : feet[i]) foot.ankle_m = MovedPoint(camera_path_[coarse_frames_[i]], foot.ankle_m);
     }
   }
-  const CameraScale scale = EstimateCameraScale(points, coarse->timestamps, coarse->cut_before, unit_path);
+  CameraScale scale = EstimateCameraScale(points, coarse->timestamps, coarse->cut_before, unit_path);
+  if (const UpEstimate up = UpInScene(lifted_.frames, problem_.frames);
+      input_.background_points != nullptr && up.found) {
+    const PointsFloor floor = FindPointsFloor(*input_.background_points, up.up);
+    scale = JoinScales(scale, ScaleByFloor(points, heights_m, coarse->timestamps, unit_path, floor));
+  }
   summary.why = scale.why;
   summary.scale_m = scale.found ? scale.scale_m : 0;
   summary.sigma_m = scale.found ? scale.sigma_m : 0;

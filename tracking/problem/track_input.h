@@ -89,6 +89,9 @@ struct TrackSequenceInput {
   const std::vector<CameraPose>* camera_from_scene = nullptr;
   /// Metres per unit of these translations; 0: not known, estimated from the person (camera_scale.h).
   double camera_scale_m = 1;
+  /// Points of the background in the scene, in the units of these translations; null: none. Their floor tells the scale
+  /// where it is sought (camera_motion/points_floor.h).
+  const std::vector<Eigen::Vector3d>* background_points = nullptr;
   Camera camera;  ///< kKnown: all of it; otherwise only width and height (0: taken from the observations)
   /// Prior on a focal length that is estimated; without it FocalPrior::ForImage().
   std::optional<FocalPrior> focal_prior;

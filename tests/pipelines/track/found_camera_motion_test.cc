@@ -85,6 +85,8 @@ TEST(FoundCameraMotion, ACameraThatGoesSomewhereGivesAPathOfUnknownLength) {
   ASSERT_TRUE(found.scene.camera_path.has_value()) << found.report.motion;
   EXPECT_FALSE(found.scene.camera_path->is_metric);
   EXPECT_EQ(CameraScaleOf(OfVideo(), *found.scene.camera_path), 0);
+  ASSERT_NE(found.scene.ForTracker().background_points, nullptr);
+  EXPECT_GE(found.scene.ForTracker().background_points->size(), 16U);
   EXPECT_EQ(found.report.motion.rfind("moving: ", 0), 0u) << found.report.motion;
   EXPECT_TRUE(found.report.goes);
   EXPECT_GT(found.report.background_points, 50);

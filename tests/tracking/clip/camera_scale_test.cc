@@ -130,5 +130,51 @@ TEST(CameraScale, SaysWhyThereIsNone) {
   EXPECT_THROW(EstimateCameraScale({&still.feet, 1}, still.timestamps, {}, still.unit_path), std::invalid_argument);
 }
 
+/// The floor of WalkBeside, whose ankles stand at y = 1.4 m, in units.
+PointsFloor FloorAt(double scale) {
+  PointsFloor floor;
+  floor.found = true;
+  floor.up = Vector3d(0, -1, 0);
+  floor.height = (1.4 + kAnkleHeight) / scale;
+  floor.covariance = 1e-8 * Eigen::Matrix3d::Identity();
+  return floor;
+}
+
+TEST(CameraScale, FeetOnTheFloorTellItWhateverTheySlide) {
+  for (const double scale : {0.3, 1.0, 7.5}) {
+    WalkBeside walk(scale, 0.8, 1);
+    for (size_t t = 0; t < 20; ++t) {  // jumps
+      for (FootPlace& foot : walk.feet[t]) {
+        foot.ankle_m -= walk.unit_path[t].camera_from_world_rotation * Vector3d(0, 0.3, 0);
+      }
+    }
+    const CameraScale found =
+        ScaleByFloor({&walk.feet, 1}, std::array{kAnkleHeight}, walk.timestamps, walk.unit_path, FloorAt(scale));
+    ASSERT_TRUE(found.found) << found.why;
+    EXPECT_NEAR(found.scale_m, scale, 1e-3 * scale);  // the kernel's tail at a jump
+    EXPECT_GT(found.sigma_m, 0.04 * scale);           // of the body's size
+    EXPECT_LT(found.sigma_m, 0.08 * scale);
+  }
+  WalkBeside walk(1);
+  EXPECT_FALSE(
+      ScaleByFloor({&walk.feet, 1}, std::array{kAnkleHeight}, walk.timestamps, walk.unit_path, PointsFloor()).found);
+  for (auto& both : walk.feet) both[0].seen = both[1].seen = false;
+  EXPECT_FALSE(
+      ScaleByFloor({&walk.feet, 1}, std::array{kAnkleHeight}, walk.timestamps, walk.unit_path, FloorAt(1)).found);
+  EXPECT_THROW(ScaleByFloor({&walk.feet, 1}, {}, walk.timestamps, walk.unit_path, FloorAt(1)), std::invalid_argument);
+}
+
+TEST(CameraScale, OfFeetAndOfTheFloorJoinBySigma) {
+  const CameraScale feet{true, "feet", 2, 0.2}, floor{true, "floor", 2.2, 0.11}, none;
+  const CameraScale joined = JoinScales(feet, floor);
+  ASSERT_TRUE(joined.found);
+  // Weights 100 and 400.
+  EXPECT_NEAR(std::log(joined.scale_m), (std::log(2.0) + 4 * std::log(2.2)) / 5, 1e-12);
+  EXPECT_NEAR(joined.sigma_m, joined.scale_m / std::sqrt(500.0), 1e-12);
+  EXPECT_EQ(JoinScales(feet, none).scale_m, 2);
+  EXPECT_EQ(JoinScales(none, floor).scale_m, 2.2);
+  EXPECT_FALSE(JoinScales(none, none).found);
+}
+
 }  // namespace
 }  // namespace bodyloom::camera_scale_test

@@ -83,7 +83,8 @@ std::vector<LowestPoint> LowestPoints(const SequenceProblem& problem, const std:
   return lowest;
 }
 
-/// The lifter's up direction, in the scene.
+}  // namespace
+
 UpEstimate UpInScene(std::span<const LiftedFrame> lifted, std::span<const FrameData> frames) {
   if (frames.front().camera_from_scene == nullptr) return EstimateUp(lifted);
   std::vector<LiftedFrame> turned(lifted.begin(), lifted.end());
@@ -92,8 +93,6 @@ UpEstimate UpInScene(std::span<const LiftedFrame> lifted, std::span<const FrameD
   }
   return EstimateUp(turned);
 }
-
-}  // namespace
 
 ClipGround::ClipGround(const ClipTermInput& clip)
     : options_(clip.options.ground),

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tracking/initialise/ground_plane.h"
@@ -21,6 +22,9 @@
 #include "tracking/room/picture_vertical.h"
 
 namespace bodyloom {
+
+/// The vertical of a clip's frames by the lifter, in the scene. `lifted` and `frames` are of the same frames.
+UpEstimate UpInScene(std::span<const LiftedFrame> lifted, std::span<const FrameData> frames);
 
 /// Without lifted frames, or if switched off, it has no effect.
 class ClipGround : public ClipTerm {
