@@ -57,8 +57,8 @@ TrackSettings Beginning(TrackSettings track, double seconds) {
   return track;
 }
 
-/// Several people are fitted again, without masks but in the last fit, with the focal length and the ground of all; finding
-/// what hides them costs as much as a fit without masks.
+/// Several people are fitted again, without masks but in the last fit, with the focal length and the ground of all;
+/// finding what hides them costs as much as a fit without masks.
 int NumFits(const RunWork& work) { return work.people_px.size() > 1 ? 4 : 1; }
 
 std::string BriefReport(const RunPlan& plan) {

@@ -131,7 +131,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   std::vector<OwnObservations> own;
   if (!alone) {
     for (const TrackSequenceInput& person : people) own.emplace_back(person);
-    // Masks cost most of a fit and tell hardly anything of the focal length and the ground, so the last fit has them alone.
+    // Masks cost most of a fit and say hardly anything of the focal length and the ground: only the last fit has them.
     for (TrackSequenceInput& person : people) person.part_labels = nullptr;
   }
   TrackPeopleResult result;
