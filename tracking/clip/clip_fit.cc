@@ -285,10 +285,11 @@ void ClipFit::FitCameraScale(SequenceProblem* coarse) {
     }
   }
   CameraScale scale = EstimateCameraScale(points, coarse->timestamps, coarse->cut_before, unit_path);
-  if (const UpEstimate up = UpInScene(lifted_.frames, problem_.frames);
-      input_.background_points != nullptr && up.found) {
-    const PointsFloor floor = FindPointsFloor(*input_.background_points, up.up);
-    scale = JoinScales(scale, ScaleByFloor(points, heights_m, coarse->timestamps, unit_path, floor));
+  if (input_.background_points != nullptr) {
+    if (const UpEstimate up = UpInScene(lifted_.frames, problem_.frames); up.found) {
+      const PointsFloor floor = FindPointsFloor(*input_.background_points, up.up);
+      scale = JoinScales(scale, ScaleByFloor(points, heights_m, coarse->timestamps, unit_path, floor));
+    }
   }
   summary.why = scale.why;
   summary.scale_m = scale.found ? scale.scale_m : 0;

@@ -43,6 +43,12 @@ struct OwnObservations {
   }
 };
 
+/// Masks cost most of a fit and say hardly anything of the focal length and the ground: the last fit alone has them.
+/// Whoever has no keypoints keeps them.
+void LeaveOutMasks(TrackSequenceInput* person) {
+  if (person->keypoints != nullptr) person->part_labels = nullptr;
+}
+
 TrackSequenceResult FitPerson(const TrackSequenceInput& input, CameraKnowledge knowledge, FitsProgress* fits) {
   TrackSequenceOptions options = fits->NextFit();
   options.camera_knowledge = knowledge;
@@ -131,8 +137,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   std::vector<OwnObservations> own;
   if (!alone) {
     for (const TrackSequenceInput& person : people) own.emplace_back(person);
-    // Masks cost most of a fit and say hardly anything of the focal length and the ground: only the last fit has them.
-    for (TrackSequenceInput& person : people) person.part_labels = nullptr;
+    for (TrackSequenceInput& person : people) LeaveOutMasks(&person);
   }
   TrackPeopleResult result;
   result.summary.hidden.resize(n);
@@ -160,7 +165,7 @@ TrackPeopleResult TrackPeople(std::vector<TrackSequenceInput> people, const Trac
   const bool shares_focal = unknown_focal && scene.focal_px > 0;
   const auto fit_again = [&](size_t i, bool with_masks) {
     own[i].CopyTo(&people[i]);
-    if (!with_masks) people[i].part_labels = nullptr;
+    if (!with_masks) LeaveOutMasks(&people[i]);
     if (shares_focal) people[i].camera = MakePinhole(width, height, scene.focal_px);
     TrackSequenceResult again =
         FitPerson(people[i], shares_focal ? CameraKnowledge::kKnown : options.camera_knowledge, &fits);

@@ -5,8 +5,8 @@
 /// Everybody is first fitted alone. The scene estimates of these fits are joined (shared_scene.h), observations hidden
 /// by nearer bodies lose weight (occlusion.h), and those for whom this changes something are fitted again. If the focal
 /// length is not known and feet of two people stand, this is done twice: with the joined focal length, which moves
-/// everybody's feet, and then with the ground and the sizes estimated from them. Masks are used in each person's last
-/// fit alone. For a moving camera the scale of the path is common to all, and sizes are not compared.
+/// everybody's feet, and then with the ground and the sizes estimated from them. Masks of people who have keypoints are
+/// used in the last fit alone. For a moving camera the scale of the path is common to all, and sizes are not compared.
 #pragma once
 
 #include <string>

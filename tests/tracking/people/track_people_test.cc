@@ -313,6 +313,26 @@ TEST(TrackPeople, MasksAreInEverybodysLastFit) {
   }
 }
 
+TEST(TrackPeople, PeopleWithMasksAloneAreFitted) {
+  const SynthClip a = Clip(1), b = Clip(2);
+  const PartLabelSequence masks_a = MasksOf(a), masks_b = MasksOf(b);
+  std::vector<TrackSequenceInput> people = {InputOf(a), InputOf(b)};
+  people[0].part_labels = &masks_a;
+  people[1].part_labels = &masks_b;
+  people[0].initialiser = &a.truth.motion;
+  people[1].initialiser = &b.truth.motion;
+  TrackSequenceOptions options = Options();
+  options.camera_knowledge = CameraKnowledge::kKnown;
+  for (TrackSequenceInput& person : people) {
+    person.camera = a.truth.camera;
+    person.lifter = nullptr;
+    person.keypoints = nullptr;
+  }
+  for (const TrackSequenceResult& person : TrackPeople(people, options).people) {
+    EXPECT_TRUE(person.summary.IsUsable());
+  }
+}
+
 TEST(TrackPeople, StopsWhenItIsTold) {
   const SynthClip a = Clip(1), b = Clip(2);
   TrackSequenceOptions options = Options();
