@@ -32,6 +32,7 @@
 #include "tracking/room/shared_scene.h"
 #include "tracking/solvers/chain/chain_problem.h"
 #include "tracking/solvers/residuals/acceleration_cost.h"
+#include "tracking/solvers/solve_sequence.h"
 #include "tracking/solvers/term_costs.h"
 #include "tracking/terms/dense/dense.h"
 #include "tracking/terms/ground_contact/clip_ground.h"
@@ -347,10 +348,33 @@ void ClipFit::FitRounds(SequenceProblem* coarse) {
       shared.push_back({term->get()});
     }
   }
+  if (shared.empty()) return;
+  const bool in_windows = runner_->InWindows(*coarse);
+  for (const auto& term : terms_) term->BeginRounds(coarse_frames_, in_windows);
+  const double from = stages_.round.from, to = stages_.round.to;
+  if (!in_windows) {
+    RunRounds(shared, coarse_frames_, from, to, {}, coarse);
+    return;
+  }
+  const auto windows = WindowsOf(static_cast<int>(coarse->states.size()), kChainFramesAtOnce.window);
+  const double share = (to - from) / static_cast<double>(windows.size());
+  for (size_t w = 0; runner_->ok() && w < windows.size(); ++w) {
+    SequenceWindow window(*coarse, windows[w].first, windows[w].second);
+    std::vector<int> frames;
+    for (const int i : window.frames) frames.push_back(coarse_frames_[i]);
+    const double begin = from + share * static_cast<double>(w);
+    RunRounds(shared, frames, begin, begin + share, window.held, &window.part);
+    window.PutInto(coarse);
+  }
+}
+
+void ClipFit::RunRounds(const std::vector<std::vector<ClipTerm*>>& shared, const std::vector<int>& frames, double from,
+                        double to, const std::vector<char>& held, SequenceProblem* part) {
   int total = 0;
   for (const auto& terms : shared) total += terms.front()->rounds().count;
-  const double share = total > 0 ? (stages_.round.to - stages_.round.from) / total : 0;  // of the whole progress
+  const double share = (to - from) / total;  // of the whole progress
   Stage stage = stages_.round;
+  stage.from = from;
   // Labels align the body with its outline before dense keypoints are matched to the visible surface.
   for (const auto& terms : shared) {
     const ClipTerm::Rounds rounds = terms.front()->rounds();
@@ -358,8 +382,8 @@ void ClipFit::FitRounds(SequenceProblem* coarse) {
     stage.max_iterations = rounds.max_iterations;
     for (int round = 0; runner_->ok() && round < rounds.count; ++round) {
       stage.to = stage.from + share;
-      for (ClipTerm* term : terms) term->StartRound(round, coarse_frames_, coarse);
-      runner_->Run(stage, coarse);
+      for (ClipTerm* term : terms) term->StartRound(round, frames, part);
+      runner_->Run(stage, part, held);
       stage.from = stage.to;
     }
   }

@@ -61,6 +61,9 @@ class ClipFit {
   /// are known.
   void SettleFocalLength(SequenceProblem* coarse);
   void FitRounds(SequenceProblem* coarse);
+  /// The rounds of these terms, those of one entry together, on some of the coarse frames.
+  void RunRounds(const std::vector<std::vector<ClipTerm*>>& shared, const std::vector<int>& frames, double from,
+                 double to, const std::vector<char>& held, SequenceProblem* part);
   /// Uncertainty of every frame's joints: that of the coarse frame nearest in time.
   void FillJointSigma(Track* track);
   [[nodiscard]] bool has_points() const { return input_.keypoints != nullptr || input_.dense != nullptr; }

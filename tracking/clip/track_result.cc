@@ -42,7 +42,7 @@ void Lose(int t, Track* track) {
 
 FrameStatus StatusOf(const FrameData& frame) {
   const size_t dense = frame.Get<DenseTerm>().size(), joints = frame.Get<LandmarkTerm>().seen.size();
-  const PartLabelMatches* labels = frame.Get<PartLabelTerm>().matches;
+  const PartLabelSource* labels = frame.Get<PartLabelTerm>().matches;
   if (labels != nullptr && labels->num_person_pixels() > 0) return FrameStatus::kTracked;
   if (joints == 0 && dense == 0) return FrameStatus::kInterpolated;
   if (joints < kFewLandmarks && dense < kFewDense) return FrameStatus::kWeak;

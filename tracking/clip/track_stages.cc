@@ -30,7 +30,13 @@ Stages StagesFor(const TrackSequenceInput& input, const TrackSequenceOptions& op
   return stages;
 }
 
-bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem) {
+bool StageRunner::InWindows(const SequenceProblem& problem) const {
+  return options_.solver != SequenceSolver::kCeres && problem.couplings.empty() &&
+         NumFarRows(problem) <= ChainProblem::kMaxFarRows &&
+         problem.states.size() > static_cast<size_t>(kChainFramesAtOnce.whole);
+}
+
+bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem, std::vector<char> held) {
   if (!ok_) return false;
   for (const FrameData& frame : problem->frames) {
     frame.ForEachTerm([&](FrameTerm* term, int /*view*/) { term->BeginStage({stage.pull, stage.landmark_kernel}); });
@@ -51,6 +57,7 @@ bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem
       problem->states.size() > static_cast<size_t>(at_once.whole)) {
     solve.max_frames_at_once = at_once.window;
   }
+  solve.held = std::move(held);
   solve.max_iterations = stage.max_iterations;
   solve.num_threads = num_threads_;
   solve.function_tolerance = stage.tolerance;

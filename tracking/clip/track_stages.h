@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "geometry/base/stopwatch.h"
 #include "tracking/problem/sequence_problem.h"
@@ -27,7 +29,7 @@ struct Stage {
 struct FramesAtOnce {
   int whole, window;
 };
-inline constexpr FramesAtOnce kChainFramesAtOnce{2000, 1500}, kCeresFramesAtOnce{1000, 500};
+inline constexpr FramesAtOnce kChainFramesAtOnce{2000, 1000}, kCeresFramesAtOnce{1000, 500};
 
 /// Coarse in time first: neighbouring frames resolve the ambiguities of a single frame, and 15 frames a second are
 /// enough for human motion. All stages but the last solve the coarse frames.
@@ -52,11 +54,14 @@ class StageRunner {
 
   /// True while the run may go on.
   [[nodiscard]] bool ok() const { return ok_; }
-  bool Run(const Stage& stage, SequenceProblem* problem) {
+  /// `held`: SolveOptions::held.
+  bool Run(const Stage& stage, SequenceProblem* problem, std::vector<char> held = {}) {
     const bool ceres = options_.solver == SequenceSolver::kCeres;
-    return Run(stage, ceres ? SequenceSolver::kCeres : SequenceSolver::kChain, problem);
+    return Run(stage, ceres ? SequenceSolver::kCeres : SequenceSolver::kChain, problem, std::move(held));
   }
-  bool Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem);
+  bool Run(const Stage& stage, SequenceSolver solver, SequenceProblem* problem, std::vector<char> held = {});
+  /// True if the stages of this problem whose shape and focal length are known are solved by chain in windows.
+  [[nodiscard]] bool InWindows(const SequenceProblem& problem) const;
 
  private:
   const TrackSequenceInput& input_;

@@ -7,9 +7,13 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
+#include "geometry/base/percentile.h"
 #include "tracking/hands/put_parts.h"
 #include "tracking/hands/turn_head.h"
 #include "tracking/initialise/swap_repair.h"
@@ -20,17 +24,57 @@ namespace {
 constexpr const char* kHands = "hands";  // lines of the plan
 constexpr const char* kHead = "head by the face";
 
-struct FittedHand {
-  HandSkeleton skeleton;
-  std::unique_ptr<HandProblem> problem;
-  HandProblem::Sigma sigma;
-  PartFitSummary summary;
+/// Frames begin ≤ t < end, fitted together with others.
+struct HandWindow {
+  int begin = 0, end = 0;
+  std::vector<char> used;  ///< T flags, or empty: all
 };
 
-void PutHand(const BodyModel& body, const FittedHand& hand, Track* track) {
+struct FittedHand {
+  HandSkeleton skeleton;
+  std::unique_ptr<HandProblem> problem;  ///< null: not fitted in this window
+  HandProblem::Sigma sigma;
+};
+
+/// Values from which a hand's summary is made.
+struct HandFits {
+  std::vector<double> lengths_px, errors_px;
+  std::string failed;
+  int iterations = 0, windows = 0;
+  std::optional<double> log_size;  ///< of a long clip, from its stretches
+  double last_log_size = 0;
+};
+
+std::vector<HandWindow> HandWindowsOf(const std::vector<double>& times, const HandFitOptions& options) {
+  const int T = static_cast<int>(times.size());
+  if (T <= options.max_frames) return {{0, T, {}}};
+  std::vector<HandWindow> windows;
+  for (int begin = 0; begin < T; begin += options.window_frames) {
+    HandWindow window{begin, std::min(T, begin + options.window_frames), std::vector<char>(size_t(T), 0)};
+    const double from = times[size_t(begin)] - options.context_s,
+                 to = times[size_t(window.end - 1)] + options.context_s;
+    for (size_t t = 0; t < times.size(); ++t) window.used[t] = times[t] >= from && times[t] <= to ? 1 : 0;
+    windows.push_back(std::move(window));
+  }
+  return windows;
+}
+
+/// Flags of about `count` frames, in stretches of 50 that lie evenly over the clip.
+std::vector<char> StretchesOf(int num_frames, int count) {
+  constexpr int kStretch = 50;
+  std::vector<char> used(size_t(num_frames), 0);
+  const int stretches = std::max(1, count / kStretch);
+  for (int i = 0; i < stretches; ++i) {
+    const auto begin = static_cast<int>(int64_t{num_frames} * i / stretches);
+    std::fill(used.begin() + begin, used.begin() + std::min(num_frames, begin + kStretch), 1);
+  }
+  return used;
+}
+
+void PutHand(const BodyModel& body, const FittedHand& hand, const HandWindow& window, Track* track) {
   const MatrixX3d rest = body.RestJoints(track->motion.betas);
   const PartOfTrack part = PartOfHand(body, hand.skeleton, *track);
-  for (int t = 0; t < track->num_frames(); ++t) {
+  for (int t = window.begin; t < window.end; ++t) {
     if (!track->HasResult(t)) continue;
     BodyPose pose = PoseFromAxisAngle(body, track->motion.poses.row(t), track->motion.trans.row(t));
     hand.problem->SetPose(t, &pose);
@@ -106,34 +150,81 @@ std::vector<PartFitSummary> FitHands(const BodyModel& body, const HandsAndFaceSe
                                      int num_threads, Track* track) {
   BODYLOOM_CHECK(seen.num_frames() == track->num_frames(), "hands of ", seen.num_frames(), " frames, a track of ",
                  track->num_frames());
-  std::vector<FittedHand> hands(2);
   const std::string why_not = WhyNoHands(body, &seen);
-  const auto fit = [&](int side) {
-    FittedHand& hand = hands[size_t(side)];
-    hand.summary.why = why_not;
-    if (!why_not.empty()) return;
-    hand.skeleton = FindHand(body, side == HandsAndFace::kLeft ? HandSide::kLeft : HandSide::kRight).value();
-    hand.problem = std::make_unique<HandProblem>(body, hand.skeleton, *track, seen, cut_before, options);
-    hand.summary.frames_seen = hand.problem->frames_seen();
-    hand.summary.why = hand.summary.frames_seen > 0
-                           ? Concatenate("seen in ", hand.summary.frames_seen, " of ", track->num_frames(), " frames, ",
-                                         std::lround(hand.problem->median_length_px()), " px long")
-                           : "not seen, or too small; rests";
-    const std::string failed = hand.problem->Solve(options.max_iterations, &hand.summary.iterations);
-    hand.summary.ran = failed.empty();
-    if (!hand.summary.ran) {
-      hand.summary.why = failed;
-      return;
-    }
-    hand.sigma = hand.problem->FindSigma();
-    hand.summary.median_px = hand.problem->MedianPx();
-    hand.summary.size = std::exp(*hand.problem->log_size());
+  std::array<HandFits, 2> fits;
+  const auto skeleton = [&](int side) {
+    return FindHand(body, side == HandsAndFace::kLeft ? HandSide::kLeft : HandSide::kRight).value();
   };
-  ParallelFor(2, num_threads, fit);
-  for (const FittedHand& hand : hands) {
-    if (hand.summary.ran) PutHand(body, hand, track);
+  const auto fit_size = [&](int side) {
+    HandProblem sample(body, skeleton(side), *track, seen, cut_before, options,
+                       StretchesOf(track->num_frames(), options.max_frames / 2));
+    if (sample.Solve(options.max_iterations).empty()) fits[size_t(side)].log_size = *sample.log_size();
+  };
+  const auto fit = [&](int side, const HandWindow& window) {
+    HandFits& all = fits[size_t(side)];
+    FittedHand hand{.skeleton = skeleton(side)};
+    hand.problem = std::make_unique<HandProblem>(body, hand.skeleton, *track, seen, cut_before, options, window.used);
+    const std::vector<double> lengths = hand.problem->LengthsPx(window.begin, window.end);
+    all.lengths_px.insert(all.lengths_px.end(), lengths.begin(), lengths.end());
+    double* size = hand.problem->log_size();
+    if (all.log_size) {
+      *size = *all.log_size;
+      hand.problem->problem().SetParameterBlockConstant(size);
+    }
+    int iterations = 0;
+    const std::string failed = hand.problem->Solve(options.max_iterations, &iterations);
+    all.iterations += iterations;
+    if (!failed.empty()) {
+      all.failed = failed;
+      hand.problem.reset();
+      return hand;
+    }
+    if (all.log_size) hand.problem->problem().SetParameterBlockVariable(size);
+    hand.sigma = hand.problem->FindSigma();
+    const std::vector<double> errors = hand.problem->ErrorsPx(window.begin, window.end);
+    all.errors_px.insert(all.errors_px.end(), errors.begin(), errors.end());
+    all.last_log_size = *size;
+    ++all.windows;
+    return hand;
+  };
+  const auto put = [&](const std::vector<FittedHand>& hands, const HandWindow& window) {
+    for (const FittedHand& hand : hands) {
+      if (hand.problem != nullptr) PutHand(body, hand, window, track);
+    }
+  };
+  if (why_not.empty()) {
+    const std::vector<HandWindow> windows = HandWindowsOf(track->motion.timestamps, options);
+    if (windows.size() > 1) ParallelFor(2, num_threads, fit_size);
+    std::vector<FittedHand> before;
+    for (size_t w = 0; w < windows.size(); ++w) {
+      std::vector<FittedHand> hands(2);
+      ParallelFor(2, num_threads, [&](int side) { hands[size_t(side)] = fit(side, windows[w]); });
+      // A window begins from the body's own track, also in the frames of its context.
+      if (w > 0) put(before, windows[w - 1]);
+      before = std::move(hands);
+    }
+    put(before, windows.back());
   }
-  return {hands[0].summary, hands[1].summary};
+  std::vector<PartFitSummary> summaries;
+  for (const HandFits& all : fits) {
+    PartFitSummary& summary = summaries.emplace_back();
+    summary.why = why_not;
+    if (!why_not.empty()) continue;
+    summary.iterations = all.iterations;
+    summary.frames_seen = static_cast<int>(all.lengths_px.size());
+    summary.ran = all.windows > 0;
+    if (!summary.ran) {
+      summary.why = all.failed;
+      continue;
+    }
+    summary.why = summary.frames_seen > 0
+                      ? Concatenate("seen in ", summary.frames_seen, " of ", track->num_frames(), " frames, ",
+                                    std::lround(Percentile(all.lengths_px, 50)), " px long")
+                      : "not seen, or too small; rests";
+    summary.median_px = all.errors_px.empty() ? 0 : Percentile(all.errors_px, 50);
+    summary.size = std::exp(all.last_log_size);
+  }
+  return summaries;
 }
 
 std::vector<PlanEntry> PlanHandsAndHead(const TrackSequenceInput& input) {

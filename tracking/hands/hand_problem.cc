@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "geometry/base/check.h"
-#include "geometry/base/percentile.h"
 #include "geometry/math/rotation.h"
 #include "tracking/solvers/chain/chain_factor.h"
 #include "tracking/solvers/residuals/ceres_functions.h"
@@ -62,19 +61,21 @@ struct HandProblem::Memory {
   std::vector<char> cut_before;  ///< of `frames`
   double log_size = 0;
   std::vector<Point> points;
-  std::vector<double> lengths_px;
+  std::vector<std::pair<int, double>> lengths_px;  ///< with the track's frame
   std::unique_ptr<ceres::Problem> problem;
 
   double* Block(int t, int at) {
     const int i = frame_of.at(size_t(t));
     return i < 0 ? nullptr : frames[size_t(i)].values.data() + at;
   }
-  void AddFrames(const BodyModel& body, const Track& track, const std::vector<char>& cuts);
+  void AddFrames(const BodyModel& body, const Track& track, const std::vector<char>& cuts,
+                 const std::vector<char>& used);
   void Observe(const HandObservation& seen, double weight, const HandFitOptions& options, Frame* frame);
   void StartFrom(const HandObservation& seen, const Matrix3d& ray, Frame* frame);
 };
 
-void HandProblem::Memory::AddFrames(const BodyModel& body, const Track& track, const std::vector<char>& cuts) {
+void HandProblem::Memory::AddFrames(const BodyModel& body, const Track& track, const std::vector<char>& cuts,
+                                    const std::vector<char>& used) {
   const HandSkeleton& hand = kinematics.hand();
   elbow_joint = body.parents()[size_t(hand.wrist)];
   const MatrixX3d rest = body.RestJoints(track.motion.betas);
@@ -83,7 +84,7 @@ void HandProblem::Memory::AddFrames(const BodyModel& body, const Track& track, c
   bool cut = true;
   for (int t = 0; t < track.num_frames(); ++t) {
     cut = cut || (!cuts.empty() && cuts[size_t(t)] != 0);
-    if (!track.HasResult(t)) continue;
+    if (!track.HasResult(t) || (!used.empty() && used[size_t(t)] == 0)) continue;
     const BodyPose pose = PoseFromAxisAngle(body, track.motion.poses.row(t), track.motion.trans.row(t));
     const PosedSkeleton skeleton = PoseSkeleton(body, rest, pose);
     Frame frame;
@@ -134,7 +135,7 @@ void HandProblem::Memory::Observe(const HandObservation& seen, double weight, co
   const Keypoint& wrist = seen.points[0];
   const bool elsewhere = (Eigen::Vector2d(wrist.x, wrist.y) - a).norm() > options.max_wrist_lengths * length_px;
   if (wrist.confidence > 0 && elsewhere) return;
-  lengths_px.push_back(length_px);
+  lengths_px.emplace_back(frame->t, length_px);
   double* values = frame->values.data();
   const auto loss = [&] {
     return new ceres::ScaledLoss(new GemanMcClureLoss(options.kernel), weight, ceres::TAKE_OWNERSHIP);
@@ -169,14 +170,16 @@ void HandProblem::Memory::Observe(const HandObservation& seen, double weight, co
 
 HandProblem::HandProblem(const BodyModel& body, const HandSkeleton& hand, const Track& track,
                          const HandsAndFaceSequence& seen, const std::vector<char>& cut_before,
-                         const HandFitOptions& options)
+                         const HandFitOptions& options, const std::vector<char>& used)
     : memory_(std::make_unique<Memory>(body, hand, track.motion.betas)) {
   BODYLOOM_CHECK(seen.num_frames() == track.num_frames(), "hands of ", seen.num_frames(), " frames, a track of ",
                  track.num_frames());
+  BODYLOOM_CHECK(used.empty() || used.size() == size_t(track.num_frames()), used.size(),
+                 " flags of frames that are used, a track of ", track.num_frames());
   Memory& m = *memory_;
   m.name = body.data().joint_names.empty() ? SmplJointNames()[size_t(hand.wrist)]
                                            : body.data().joint_names[size_t(hand.wrist)];
-  m.AddFrames(body, track, cut_before);
+  m.AddFrames(body, track, cut_before, used);
   ceres::Problem::Options of_problem;
   of_problem.enable_fast_removal = true;
   m.problem = std::make_unique<ceres::Problem>(of_problem);
@@ -214,9 +217,13 @@ double* HandProblem::forearm(int t) { return memory_->Block(t, kForearmAt); }
 double* HandProblem::place(int t) { return memory_->Block(t, kPlaceAt); }
 double* HandProblem::log_size() { return &memory_->log_size; }
 const HandKinematics& HandProblem::kinematics() const { return memory_->kinematics; }
-int HandProblem::frames_seen() const { return static_cast<int>(memory_->lengths_px.size()); }
-double HandProblem::median_length_px() const {
-  return memory_->lengths_px.empty() ? 0 : Percentile(memory_->lengths_px, 50);
+
+std::vector<double> HandProblem::LengthsPx(int begin, int end) const {
+  std::vector<double> lengths;
+  for (const auto& [t, length_px] : memory_->lengths_px) {
+    if (t >= begin && t < end) lengths.push_back(length_px);
+  }
+  return lengths;
 }
 
 std::string HandProblem::NameOf(const double* block) const {
@@ -243,10 +250,11 @@ std::string HandProblem::Solve(int max_iterations, int* iterations) {
   return summary.IsSolutionUsable() ? "" : "Ceres: " + summary.message;
 }
 
-double HandProblem::MedianPx() const {
+std::vector<double> HandProblem::ErrorsPx(int begin, int end) const {
   std::vector<double> px;
   for (const Memory::Point& point : memory_->points) {
     const Memory::Frame& frame = memory_->frames[point.frame];
+    if (frame.t < begin || frame.t >= end) continue;
     const double* values = frame.values.data();
     const std::array<const double*, 5> blocks = {values, values + kWristAt, values + kForearmAt, values + kPlaceAt,
                                                  &memory_->log_size};
@@ -255,7 +263,7 @@ double HandProblem::MedianPx() const {
         .Evaluate(blocks.data(), residual.data(), nullptr);
     px.push_back(residual.norm());
   }
-  return px.empty() ? 0 : Percentile(px, 50);
+  return px;
 }
 
 void HandProblem::SetPose(int t, BodyPose* pose) const {

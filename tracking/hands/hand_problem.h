@@ -44,14 +44,20 @@ struct HandFitOptions {
   double max_wrist_lengths = 2;
   double min_length_px = 8;  ///< of a hand from wrist to middle knuckle, by the body; smaller ones are not used
   int max_iterations = 25;
+  /// A solve takes 80 KB a frame (docs/lab/run_speed.md, "Memory"). Tracks of more than max_frames frames are fitted
+  /// in windows, each with all frames within context_s of it, after which the processes above have forgotten. The
+  /// hand's size is fitted before, to stretches of 50 frames all over the clip.
+  int max_frames = 2000, window_frames = 600;
+  double context_s = 3;
 };
 
 class HandProblem {
  public:
-  /// `seen` has the track's frames. `cut_before`: T flags, or empty. Nothing is kept of the arguments. Throws
-  /// std::invalid_argument when sizes differ.
+  /// `seen` has the track's frames. `cut_before`: T flags, or empty. `used`: T flags of the problem's frames,
+  /// the others are as if lost; empty: all. Nothing is kept of the arguments. Throws std::invalid_argument when sizes
+  /// differ.
   HandProblem(const BodyModel& body, const HandSkeleton& hand, const Track& track, const HandsAndFaceSequence& seen,
-              const std::vector<char>& cut_before, const HandFitOptions& options);
+              const std::vector<char>& cut_before, const HandFitOptions& options, const std::vector<char>& used = {});
   ~HandProblem();
   HandProblem(const HandProblem&) = delete;
   HandProblem& operator=(const HandProblem&) = delete;
@@ -67,11 +73,10 @@ class HandProblem {
   [[nodiscard]] std::string NameOf(const double* block) const;
 
   [[nodiscard]] const HandKinematics& kinematics() const;
-  [[nodiscard]] int frames_seen() const;
-  /// Median hand length in the frames in which it was found, pixels; 0: in none.
-  [[nodiscard]] double median_length_px() const;
-  /// Median distance of the points from where they were found, at the parameters' values, pixels; 0 without points.
-  [[nodiscard]] double MedianPx() const;
+  /// Lengths of the hand in the frames begin ≤ t < end in which it was found, pixels.
+  [[nodiscard]] std::vector<double> LengthsPx(int begin, int end) const;
+  /// Distances of the points of these frames from where they were found, at the parameters' values, pixels.
+  [[nodiscard]] std::vector<double> ErrorsPx(int begin, int end) const;
 
   /// Solves with Ceres on one thread. Returns "", or the reason why the values are not usable. `iterations` may be
   /// null.

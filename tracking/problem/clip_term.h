@@ -65,6 +65,9 @@ class ClipTerm {
     const char* stage = "";  ///< its name in summary and progress; terms that name the same one share its solves
   };
   [[nodiscard]] virtual Rounds rounds() const { return {}; }
+  /// Called with all coarse frames before the rounds. `in_windows`: the rounds are run in one window of the clip after
+  /// the other, and so is the solve of all frames, so that only a window's correspondences need be kept.
+  virtual void BeginRounds(const std::vector<int>& /*coarse_frames*/, bool /*in_windows*/) {}
   /// Updates the term for a round. `problem` holds `frames` of the clip; `round` counts from 0, and is the last one for
   /// all frames.
   virtual void StartRound(int /*round*/, const std::vector<int>& /*frames*/, SequenceProblem* /*problem*/) {}

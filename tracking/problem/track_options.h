@@ -61,6 +61,9 @@ struct SolveOptions {
   /// A clip of more frames is solved in overlapping windows of this length, with shape and focal length held; 0: never.
   /// Not if users' terms couple frames.
   int max_frames_at_once = 0;
+  /// T flags of frames that keep their states, as shape and focal length do then (SolveChain()); empty: none. Only for
+  /// the chain engine.
+  std::vector<char> held;
   ChainOptions chain;
   /// Called after each iteration with (iteration, cost); false stops.
   std::function<bool(int, double)> on_iteration;

@@ -43,9 +43,6 @@ SolveStatus StatusOf(const ceres::Solver::Summary& summary) {
   }
 }
 
-/// Frames that two windows share.
-constexpr int kOverlap = 100;
-
 SolveReport SolveFrames(int begin, int end, bool shared_constant, const SolveOptions& options,
                         SequenceProblem* problem) {
   CeresProblem ceres_problem(*problem,
@@ -96,7 +93,7 @@ double CostOf(const SequenceProblem& problem, int num_threads) {
 /// Frames that a user's term couples may be in different windows.
 bool SolvesInWindows(const SequenceProblem& problem, const SolveOptions& options) {
   const int T = static_cast<int>(problem.states.size()), size = options.max_frames_at_once;
-  return size > 2 * kOverlap && T > size && problem.couplings.empty();
+  return size > 2 * kWindowOverlap && T > size && problem.couplings.empty();
 }
 
 void AddTimes(const SolveReport& part, SolveReport* whole) {
@@ -114,11 +111,10 @@ void AddTimes(const SolveReport& part, SolveReport* whole) {
 /// of two windows count twice.
 SolveReport SolveInWindows(const SolveOptions& options, const std::function<SolveReport(int begin, int end)>& solve,
                            SequenceProblem* problem) {
-  const int T = static_cast<int>(problem->states.size()), size = options.max_frames_at_once;
   SolveReport report;
   report.status = SolveStatus::kConverged;
-  for (int begin = 0; begin == 0 || begin + kOverlap < T; begin += size - kOverlap) {
-    const SolveReport window = solve(begin, std::min(T, begin + size));
+  for (const auto& [begin, end] : WindowsOf(static_cast<int>(problem->states.size()), options.max_frames_at_once)) {
+    const SolveReport window = solve(begin, end);
     AddTimes(window, &report);
     report.initial_cost += window.initial_cost;
     report.final_cost += window.final_cost;
@@ -146,22 +142,38 @@ SequenceProblem PartOf(const SequenceProblem& problem, const std::vector<int>& f
 }
 
 SolveReport SolveChainWindow(int begin, int end, SolveOptions options, SequenceProblem* problem) {
-  constexpr int kNeighbours = 2;  // that accelerations couple
-  const int T = static_cast<int>(problem->states.size());
-  std::vector<int> frames(std::min(T, end + kNeighbours) - std::max(0, begin - kNeighbours));
-  std::iota(frames.begin(), frames.end(), std::max(0, begin - kNeighbours));
-  std::vector<char> held;
-  for (const int t : frames) held.push_back(t < begin || t >= end ? 1 : 0);
-  SequenceProblem part = PartOf(*problem, frames);
+  SequenceWindow window(*problem, begin, end);
   options.shape_constant = options.focal_constant = true;
-  const SolveReport report = SolveChain(&part, options, held);
-  for (size_t i = 0; i < frames.size(); ++i) {
-    if (held[i] == 0) problem->states[frames[i]] = std::move(part.states[i]);
-  }
+  const SolveReport report = SolveChain(&window.part, options, window.held);
+  window.PutInto(problem);
   return report;
 }
 
 }  // namespace
+
+std::vector<std::pair<int, int>> WindowsOf(int num_frames, int size) {
+  BODYLOOM_CHECK(size > kWindowOverlap, "windows of ", size, " frames that share ", kWindowOverlap);
+  std::vector<std::pair<int, int>> windows;
+  for (int begin = 0; begin == 0 || begin + kWindowOverlap < num_frames; begin += size - kWindowOverlap) {
+    windows.emplace_back(begin, std::min(num_frames, begin + size));
+  }
+  return windows;
+}
+
+SequenceWindow::SequenceWindow(const SequenceProblem& problem, int begin, int end) {
+  constexpr int kNeighbours = 2;  // that accelerations couple
+  const int T = static_cast<int>(problem.states.size());
+  frames.resize(std::min(T, end + kNeighbours) - std::max(0, begin - kNeighbours));
+  std::iota(frames.begin(), frames.end(), std::max(0, begin - kNeighbours));
+  for (const int t : frames) held.push_back(t < begin || t >= end ? 1 : 0);
+  part = PartOf(problem, frames);
+}
+
+void SequenceWindow::PutInto(SequenceProblem* problem) {
+  for (size_t i = 0; i < frames.size(); ++i) {
+    if (held[i] == 0) problem->states[frames[i]] = std::move(part.states[i]);
+  }
+}
 
 SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options) {
   const size_t T = problem->states.size();
@@ -174,7 +186,7 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
   if (options.solver == SequenceSolver::kCeres) return SolveWithCeres(problem, options);
   const auto solve_window = [&](int begin, int end) { return SolveChainWindow(begin, end, options, problem); };
   SolveReport chain = SolvesInWindows(*problem, options) ? SolveInWindows(options, solve_window, problem)
-                                                         : SolveChain(problem, options);
+                                                         : SolveChain(problem, options, options.held);
   const bool ended = chain.status == SolveStatus::kFailure || chain.status == SolveStatus::kStopped;
   if (options.solver == SequenceSolver::kChain || ended) return chain;
   SolveReport report = SolveWithCeres(problem, options);

@@ -2,6 +2,9 @@
 /// Solves a SequenceProblem with the engine that the options name.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "tracking/problem/sequence_problem.h"
 #include "tracking/problem/track_options.h"
 
@@ -12,6 +15,23 @@ namespace bodyloom {
 /// shape and focal length held; its report's costs are then sums over the windows. Throws std::invalid_argument when
 /// the problem's sizes contradict each other.
 SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options);
+
+/// Windows begin ≤ t < end of `size` frames that cover a clip and overlap by kWindowOverlap.
+inline constexpr int kWindowOverlap = 100;
+std::vector<std::pair<int, int>> WindowsOf(int num_frames, int size);
+
+/// The frames begin ≤ t < end as a problem of their own. The frames next to them that accelerations couple are in it,
+/// too, and are to be held (SolveOptions::held), so that there is no seam and a solve of the window lowers the cost of
+/// the whole.
+struct SequenceWindow {
+  std::vector<int> frames;  ///< of the clip
+  std::vector<char> held;
+  SequenceProblem part;
+
+  SequenceWindow(const SequenceProblem& problem, int begin, int end);
+  /// Puts the states of the frames that are not held into the clip's problem.
+  void PutInto(SequenceProblem* problem);
+};
 
 /// Implements SolveSequence() with Ceres: Levenberg–Marquardt with sparse Cholesky on the blocks of ceres_problem.h,
 /// for any structure.

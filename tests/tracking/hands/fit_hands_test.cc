@@ -169,6 +169,26 @@ TEST(FitHands, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(one.track.joint_sigma, two.track.joint_sigma);
 }
 
+TEST(FitHands, WindowsLeaveNoSeam) {
+  constexpr int kFrames = 120, kWindow = 40;
+  SyntheticHands whole = MakeSyntheticHands({.pose = "counting", .frames = kFrames}), windows = whole;
+  HandFitOptions options;
+  options.max_iterations = 100;
+  FitHands(BuiltinBodyWithHands(), whole.seen, {}, options, 1, &whole.track);
+  options.max_frames = 100, options.window_frames = kWindow, options.context_s = 1.5;
+  const auto summaries = FitHands(BuiltinBodyWithHands(), windows.seen, {}, options, 1, &windows.track);
+  EXPECT_EQ(summaries[0].frames_seen, kFrames);
+  const RowMatrixXd apart = (windows.track.motion.poses - whole.track.motion.poses).cwiseAbs();
+  double at_seams = 0;
+  for (int t = kWindow; t < kFrames; t += kWindow) {
+    const Eigen::RowVectorXd step = windows.track.motion.poses.row(t) - windows.track.motion.poses.row(t - 1);
+    const Eigen::RowVectorXd expected = whole.track.motion.poses.row(t) - whole.track.motion.poses.row(t - 1);
+    at_seams = std::max(at_seams, (step - expected).cwiseAbs().maxCoeff());
+  }
+  EXPECT_LT(at_seams, 0.5 * kDegree);
+  EXPECT_LT(apart.maxCoeff(), 2 * kDegree);
+}
+
 TEST(FitHands, LostFramesStayLost) {
   SyntheticHands made = MakeSyntheticHands({.pose = "flat", .frames = 12});
   const double nan = std::numeric_limits<double>::quiet_NaN();

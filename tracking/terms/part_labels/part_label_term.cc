@@ -424,7 +424,11 @@ void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& s
   Weigh(weight);
 }
 
-void AddMatches(const PartLabelMatches& matches, bool of_silhouette, FrameAccumulator* sums) {
+int PartLabelMatches::MostRowsOfMask() { return 3 * kMaxSilhouette; }
+
+void AddMatches(const PartLabelSource& source, bool of_silhouette, FrameAccumulator* sums) {
+  const std::shared_ptr<const PartLabelMatches> held = source.Get(sums->layout());
+  const PartLabelMatches& matches = *held;
   const MatrixX3i& faces = sums->layout().model->data().faces;
   const Kinematics& kinematics = sums->kinematics();
   const bool derivatives = sums->derivatives();

@@ -38,7 +38,21 @@
 
 namespace bodyloom {
 
-class PartLabelMatches {
+class PartLabelMatches;
+
+/// The matches of one frame, which may be kept or computed when they are asked for.
+class PartLabelSource {
+ public:
+  virtual ~PartLabelSource() = default;
+  /// Number of rows of the silhouette, or of the parts; an upper bound before the matches are known.
+  [[nodiscard]] virtual int num_rows(bool of_silhouette) const = 0;
+  /// Number of pixels that show the person.
+  [[nodiscard]] virtual int num_person_pixels() const = 0;
+  /// Called from several threads, for one frame by one at a time.
+  [[nodiscard]] virtual std::shared_ptr<const PartLabelMatches> Get(const FrameLayout& layout) const = 0;
+};
+
+class PartLabelMatches : public PartLabelSource {
  public:
   static constexpr int kMinPartPixels = 30;
   static constexpr double kSilhouetteCount = 40, kPartCount = 60, kSpeckShare = 0.1;
@@ -80,14 +94,18 @@ class PartLabelMatches {
 
   [[nodiscard]] const std::vector<Target>& targets() const { return targets_; }
   [[nodiscard]] const std::vector<ContourPoint>& contour() const { return contour_; }
-  /// Number of rows of the silhouette, or of the parts.
-  [[nodiscard]] int num_rows(bool of_silhouette) const { return num_rows_[of_silhouette]; }
+  [[nodiscard]] int num_rows(bool of_silhouette) const override { return num_rows_[of_silhouette]; }
   [[nodiscard]] double kernel() const { return kernel_; }
   /// Number of detected boundary samples and pixels without a correspondence on the body in this round.
   [[nodiscard]] int silhouette_unmatched() const { return silhouette_unmatched_; }
   [[nodiscard]] int part_unmatched() const { return part_unmatched_; }
-  /// Number of pixels that show the person.
-  [[nodiscard]] int num_person_pixels() const { return num_person_pixels_; }
+  [[nodiscard]] int num_person_pixels() const override { return num_person_pixels_; }
+  /// This object, which the caller keeps.
+  [[nodiscard]] std::shared_ptr<const PartLabelMatches> Get(const FrameLayout& /*layout*/) const override {
+    return {std::shared_ptr<const PartLabelMatches>(), this};
+  }
+  /// The largest number of rows that a mask has.
+  static int MostRowsOfMask();
   /// Field of a part, or of the silhouette (0); null if there are too few pixels.
   [[nodiscard]] const DistanceField* Field(uint8_t part) const;
 
@@ -149,12 +167,12 @@ class PartLabelMatches {
 bool IsMask(const PartLabelSequence& labels);
 
 /// Adds the residuals of the silhouette, or of the parts.
-void AddMatches(const PartLabelMatches& matches, bool of_silhouette, FrameAccumulator* sums);
+void AddMatches(const PartLabelSource& source, bool of_silhouette, FrameAccumulator* sums);
 
 template <bool kOfSilhouette>
 class OutlineTerm : public CopyableTerm<OutlineTerm<kOfSilhouette>> {
  public:
-  const PartLabelMatches* matches = nullptr;  ///< borrowed; null: none
+  const PartLabelSource* matches = nullptr;  ///< borrowed; null: none
 
   [[nodiscard]] std::string name() const override { return kOfSilhouette ? "silhouette" : "part labels"; }
   [[nodiscard]] int num_rows() const override { return matches == nullptr ? 0 : matches->num_rows(kOfSilhouette); }

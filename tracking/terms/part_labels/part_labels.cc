@@ -36,14 +36,60 @@ std::unique_ptr<ClipTerm> MakePartLabelRounds(const ClipTermInput& clip) {
   return std::make_unique<PartLabelRounds>(clip);
 }
 
-PartLabelRounds::PartLabelRounds(const ClipTermInput& clip)
+std::shared_ptr<PartLabelMatches> KeptMatches::Find(const std::shared_ptr<PartLabelMatches>& slot) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return slot;
+}
+
+void KeptMatches::Add(std::shared_ptr<PartLabelMatches> matches, std::shared_ptr<PartLabelMatches>* slot) {
+  std::shared_ptr<PartLabelMatches> forgotten;  // freed after the lock
+  const std::lock_guard<std::mutex> lock(mutex_);
+  *slot = std::move(matches);
+  slots_.push_back(slot);
+  if (slots_.size() <= most_) return;
+  forgotten = std::move(*slots_.front());
+  slots_.front()->reset();
+  slots_.pop_front();
+}
+
+void LabelledFrame::Correspond(const FrameLayout& layout, PartLabelMatches* matches) const {
+  thread_local VisibleSurface surface;
+  matches->Correspond(layout, round_.state, round_.betas, round_.log_focal, round_.person_height_px, round_.kernel,
+                      round_.weight, &surface);
+  num_rows_ = {matches->num_rows(false), matches->num_rows(true)};
+  num_person_pixels_ = matches->num_person_pixels();
+}
+
+std::shared_ptr<const PartLabelMatches> LabelledFrame::Get(const FrameLayout& layout) const {
+  if (std::shared_ptr<PartLabelMatches> known = kept_.Find(matches_); known != nullptr) return known;
+  auto matches = std::make_shared<PartLabelMatches>(labels_, t_, skinner_, options_);
+  Correspond(layout, matches.get());
+  kept_.Add(matches, &matches_);
+  return matches;
+}
+
+void LabelledFrame::StartRound(const FrameLayout& layout, Round round, bool later) {
+  round_ = std::move(round);
+  if (const std::shared_ptr<PartLabelMatches> known = kept_.Find(matches_); known != nullptr) {
+    Correspond(layout, known.get());
+  } else if (later) {
+    num_rows_ = {0, PartLabelMatches::MostRowsOfMask()};
+    num_person_pixels_ = 1;
+  } else {
+    Get(layout);
+  }
+}
+
+PartLabelRounds::PartLabelRounds(const ClipTermInput& clip, size_t most_kept)
     : labels_(*clip.input.part_labels),
       options_(clip.options.part_labels),
       skinner_(std::make_shared<const Skinner>(*clip.layout.model)),
       num_threads_(clip.num_threads),
       stature_m_(clip.stature_m),
       is_thinned_(IsMask(labels_) && clip.input.keypoints != nullptr),
-      part_labels_(size_t(labels_.num_frames())) {}
+      most_kept_(most_kept),
+      kept_(size_t(labels_.num_frames())),
+      frames_(size_t(labels_.num_frames())) {}
 
 std::vector<char> PartLabelRounds::SparseFrames() const {
   if (!is_thinned_) return {};
@@ -52,8 +98,10 @@ std::vector<char> PartLabelRounds::SparseFrames() const {
   return labelled;
 }
 
-void PartLabelRounds::SelectFrames(const std::vector<int>& coarse_frames) {
-  is_used_.assign(part_labels_.size(), is_thinned_ ? 0 : 1);
+void PartLabelRounds::BeginRounds(const std::vector<int>& coarse_frames, bool in_windows) {
+  later_ = is_thinned_ && in_windows;
+  if (later_) kept_.SetMost(most_kept_);
+  is_used_.assign(frames_.size(), is_thinned_ ? 0 : 1);
   if (!is_thinned_) return;
   std::vector<double> steps;
   int last = -1;
@@ -74,23 +122,24 @@ void PartLabelRounds::Observe(SequenceProblem* problem) {
 }
 
 void PartLabelRounds::StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) {
-  if (is_used_.empty()) SelectFrames(frames);
+  if (is_used_.empty()) BeginRounds(frames, false);
   const double s = options_.rounds > 1 ? static_cast<double>(round) / (options_.rounds - 1) : 1.0;
   const double kernel = options_.start_kernel * std::pow(options_.kernel / options_.start_kernel, s);
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     const auto t = size_t(frames[i]);
     if (is_used_[t] == 0) return;
-    if (part_labels_[t] == nullptr) {
-      part_labels_[t] = std::make_unique<PartLabelMatches>(labels_, frames[i], skinner_, options_);
+    if (frames_[t] == nullptr) {
+      frames_[t] = std::make_unique<LabelledFrame>(labels_, frames[i], skinner_, options_, &kept_);
     }
-    thread_local VisibleSurface surface;
-    PartLabelMatches& matches = *part_labels_[t];
-    const FrameState state = StateInCamera(*problem, i);
-    const double height_px = UprightHeightPx(problem->layout, state, stature_m_);
-    matches.Correspond(problem->layout, state, problem->betas, problem->log_focal, height_px, kernel, weight_,
-                       &surface);
-    problem->frames[i].Get<SilhouetteTerm>().matches = &matches;
-    problem->frames[i].Get<PartLabelTerm>().matches = &matches;
+    LabelledFrame::Round start{.state = StateInCamera(*problem, i),
+                               .betas = problem->betas,
+                               .log_focal = problem->log_focal,
+                               .kernel = kernel,
+                               .weight = weight_};
+    start.person_height_px = UprightHeightPx(problem->layout, start.state, stature_m_);
+    frames_[t]->StartRound(problem->layout, std::move(start), later_);
+    problem->frames[i].Get<SilhouetteTerm>().matches = frames_[t].get();
+    problem->frames[i].Get<PartLabelTerm>().matches = frames_[t].get();
   });
 }
 

@@ -11,6 +11,7 @@
 #include "tests/support/frame_scene.h"
 #include "tests/tracking/jet_twin.h"
 #include "tracking/problem/robust.h"
+#include "tracking/terms/part_labels/part_labels.h"
 
 namespace bodyloom::part_label_term_test {
 namespace {
@@ -70,7 +71,7 @@ std::unique_ptr<PartLabelMatches> MakeTerm(const Scene& scene, const FrameState&
 
 int NumRows(const PartLabelMatches& term) { return term.num_rows(true) + term.num_rows(false); }
 
-FrameSystem Evaluate(const Scene& scene, const PartLabelMatches& term, const FrameState& state,
+FrameSystem Evaluate(const Scene& scene, const PartLabelSource& term, const FrameState& state,
                      FrameResiduals* residuals = nullptr) {
   FrameData data;
   data.Get<SilhouetteTerm>().matches = &term;
@@ -372,6 +373,33 @@ TEST(PartLabelTerm, AMaskIsASilhouetteWithoutParts) {
   EXPECT_EQ(system.cost, expected.cost);
   EXPECT_EQ(system.gradient, expected.gradient);
   EXPECT_EQ(term->Field(1), nullptr);
+}
+
+TEST(PartLabelTerm, MatchesThatWereForgottenAreFoundAgain) {
+  const auto scene = MakeScene();
+  scene->labels.AsMask();
+  FrameState moved = scene->truth;
+  moved.translation.x() += 0.1;
+  const FrameSystem expected = Evaluate(*scene, *MakeTerm(*scene, scene->truth), moved);
+  KeptMatches kept(1);
+  const PartLabelOptions options;
+  std::vector<std::unique_ptr<LabelledFrame>> frames;
+  for (int i = 0; i < 2; ++i) {
+    frames.push_back(std::make_unique<LabelledFrame>(scene->labels, 0, scene->skinner, options, &kept));
+    frames.back()->StartRound(scene->layout, {scene->truth, scene->betas, scene->log_focal, kPersonPx, 8, 1}, true);
+    EXPECT_GE(frames.back()->num_rows(true), MakeTerm(*scene, scene->truth)->num_rows(true));
+  }
+  const auto first = frames[0]->Get(scene->layout);
+  EXPECT_EQ(frames[0]->Get(scene->layout), first);
+  for (const int i : {0, 1, 0, 0, 1}) {
+    const FrameSystem system = Evaluate(*scene, *frames[i], moved);
+    EXPECT_EQ(system.cost, expected.cost);
+    EXPECT_EQ(system.gradient, expected.gradient);
+    EXPECT_EQ(system.H, expected.H);
+  }
+  EXPECT_NE(frames[0]->Get(scene->layout), first);
+  EXPECT_EQ(frames[0]->num_rows(true), MakeTerm(*scene, scene->truth)->num_rows(true));
+  EXPECT_EQ(frames[0]->num_person_pixels(), first->num_person_pixels());
 }
 
 TEST(PartLabelTerm, MergedPartsHaveNoBoundaryBetweenThem) {
