@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "geometry/base/percentile.h"
 #include "geometry/body/centre_of_mass.h"
@@ -240,7 +242,61 @@ void MoveGrounds(const std::vector<ContactPoint>& points, const std::vector<std:
   }
 }
 
+/// By point and frame: where it is held on the ground, in the frame of the states; soles only (docs/lab/world.md).
+std::vector<std::vector<std::optional<Vector3d>>> FindHeld(const SequenceProblem& problem,
+                                                           const std::vector<ContactPoint>& points,
+                                                           const std::vector<std::vector<char>>& touches,
+                                                           const Heights& all) {
+  const size_t T = touches.size(), num_points = points.size();
+  std::vector<char> begins(problem.cut_before);
+  for (size_t t = 1; t < T; ++t) {
+    if (problem.frames[t].ground != problem.frames[t - 1].ground) begins[t] = 1;
+  }
+  std::vector<std::vector<std::optional<Vector3d>>> held(num_points, std::vector<std::optional<Vector3d>>(T));
+  for (size_t k = 0; k < num_points; ++k) {
+    if (!points[k].sole) continue;
+    std::vector<Vector3d> path(T, Vector3d::Zero());
+    std::vector<char> touching(T, 0);
+    for (size_t t = 0; t < T; ++t) {
+      if (touches[t].empty() || touches[t][k] == 0) continue;
+      touching[t] = 1;
+      path[t] = all.places[t].col(static_cast<Eigen::Index>(k));
+    }
+    held[k] = HeldPlaces(path, touching, begins, problem.timestamps);
+  }
+  return held;
+}
+
 }  // namespace
+
+std::vector<std::optional<Vector3d>> HeldPlaces(const std::vector<Vector3d>& path, const std::vector<char>& touches,
+                                                const std::vector<char>& begins,
+                                                const std::vector<double>& timestamps) {
+  const size_t T = path.size();
+  BODYLOOM_CHECK(touches.size() == T && begins.size() == T && timestamps.size() == T, touches.size(), " touches, ",
+                 begins.size(), " beginnings and ", timestamps.size(), " timestamps of ", T, " places");
+  std::vector<std::optional<Vector3d>> held(T);
+  const auto mean = [&](size_t from, size_t to) {
+    Vector3d sum = Vector3d::Zero();
+    for (size_t t = from; t < to; ++t) sum += path[t];
+    return Vector3d(sum / static_cast<double>(to - from));
+  };
+  for (size_t begin = 0, end = 0; begin < T; begin = end) {
+    end = begin + 1;
+    if (touches[begin] == 0) continue;
+    Vector3d sum = path[begin];
+    for (; end < T && begins[end] == 0 && touches[end] != 0; ++end) {
+      if ((path[end] - sum / static_cast<double>(end - begin)).norm() > kHoldSpreadM) break;
+      sum += path[end];
+    }
+    if (end - begin < 2 || timestamps[end - 1] - timestamps[begin] < kMinHold_s) continue;
+    const size_t middle = (begin + end) / 2;
+    if ((mean(begin, middle) - mean(middle, end)).norm() > 0.5 * kHoldSpreadM) continue;
+    std::fill(held.begin() + static_cast<std::ptrdiff_t>(begin), held.begin() + static_cast<std::ptrdiff_t>(end),
+              mean(begin, end));
+  }
+  return held;
+}
 
 ClipContacts::ClipContacts(const ClipTermInput& clip)
     : weight_(clip.options.ground.surface_weight),
@@ -259,6 +315,7 @@ void ClipContacts::StartRound(int /*round*/, const std::vector<int>& /*frames*/,
   std::vector<std::vector<char>> touches(problem->frames.size());
   for (size_t t = 0; t < problem->frames.size(); ++t) touches[t] = FindTouching(*problem, points_, all, hovers, t);
   if (!level_is_given_) MoveGrounds(points_, touches, problem, &all);
+  const auto held = FindHeld(*problem, points_, touches, all);
   for (size_t t = 0; t < problem->frames.size(); ++t) {
     FrameData& frame = problem->frames[t];
     auto& term = frame.Get<SurfaceContactTerm>();
@@ -277,7 +334,9 @@ void ClipContacts::StartRound(int /*round*/, const std::vector<int>& /*frames*/,
         const double variance = term.sigma_m * term.sigma_m;
         const Vector3d place = all.places[t].col(static_cast<Eigen::Index>(k));
         const double share = variance / (variance + frame.ground->HeightVariance(place));
-        term.contacts.push_back({points_[k].vertex, touches[t][k] != 0, points_[k].rest_m, share});
+        term.contacts.push_back({points_[k].vertex, touches[t][k] != 0, points_[k].rest_m, share, held[k][t]});
+        std::optional<Vector3d>& place_m = term.contacts.back().held_m;
+        if (place_m && frame.camera_from_scene != nullptr) place_m = MovedPoint(*frame.camera_from_scene, *place_m);
       }
     }
   }

@@ -17,7 +17,9 @@
 /// fit's covariance gives the variance of the ground's height at any place. A ground that is given stays where it is.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "tracking/problem/clip_term.h"
@@ -37,6 +39,22 @@ inline constexpr double kFeetApartM = 0.03;    ///< σ of d
 /// heights alone, without what all frames are off together, lasts less (initialise/support_levels.cc).
 inline constexpr double kTouchErrorLasts_s = 1.5;
 inline constexpr double kMinFall = 2.5;  ///< m/s²; a quarter of g, because the track and the parabola are smooth
+
+inline constexpr double kHoldSpreadM = 0.06, kMinHold_s = 0.2;
+
+/// By frame: the place at which one point that touches the ground is held, so that contacts do not slide, in the frame
+/// of `path`; none: it is free. `path`: the point's place by frame, metres, read only where it touches; `touches` and
+/// `begins` (nothing before this frame is the same stretch): not 0 means yes; `timestamps`: seconds. All of one length,
+/// checked.
+///
+/// A stretch is a run of frames in which the point touches the ground and stays within kHoldSpreadM of the mean of the
+/// stretch so far. A stretch holds the point at its mean place if it lasts kMinHold_s and the means of its two halves
+/// are within half of that spread: whoever slides slowly leaves each stretch at its edge, with halves further apart. A
+/// foot that turns on its toe is held at the toe alone, as the heel leaves its place.
+std::vector<std::optional<Eigen::Vector3d>> HeldPlaces(const std::vector<Eigen::Vector3d>& path,
+                                                       const std::vector<char>& touches,
+                                                       const std::vector<char>& begins,
+                                                       const std::vector<double>& timestamps);
 
 /// True if contacts with the ground are looked for.
 bool SeeksContacts(const TrackSequenceInput& input, const TrackSequenceOptions& options);

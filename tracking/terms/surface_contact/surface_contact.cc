@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/terms/surface_contact/surface_contact.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "tracking/problem/frame_accumulator.h"
@@ -16,6 +17,10 @@ void SurfaceContactTerm::Add(FrameAccumulator* sums) const {
   const bool weak = layout.knowledge == CameraKnowledge::kWeak;
   const Vector3d offset = weak ? layout.BodyPlace(sums->state()) : Vector3d::Zero();
   const Eigen::RowVector3d by_place = up.transpose() * layout.BodyPlaceByTranslation(sums->state()) / sigma_m;
+  Eigen::Matrix<double, 2, 3> across;
+  across.row(0) = up.unitOrthogonal().transpose();
+  across.row(1) = up.cross(Vector3d(across.row(0).transpose())).transpose();
+  const Eigen::Matrix<double, 2, 3> across_by_place = across * layout.BodyPlaceByTranslation(sums->state());
   constexpr double kVertexAlone[3] = {1, 0, 0};
   for (const Contact& contact : contacts) {
     const int vertices[3] = {contact.vertex, contact.vertex, contact.vertex};
@@ -27,6 +32,22 @@ void SurfaceContactTerm::Add(FrameAccumulator* sums) const {
     const double height = (up.dot(x + offset) - level_m - contact.rest_m) / sigma_m;
     const bool free = !contact.touches && height >= 0;
     if (free && !sums->one_by_one()) continue;
+    if (contact.held_m) {
+      const Eigen::Vector2d off = across * (x + offset - *contact.held_m) / hold_sigma_m;
+      const double scale = sums->AddGroup(2, off.squaredNorm(), kHoldKernel, kHoldWeight * weight);
+      if (sums->derivatives()) {
+        place(true);
+        auto rows = sums->NextRows(3);
+        sums->FillPointRows(rows);
+        const Eigen::MatrixXd d_off = scale / hold_sigma_m * across * rows;
+        rows.topRows(2) = d_off;
+        rows.topRows(2).middleCols<3>(layout.translation_column) = scale / hold_sigma_m * across_by_place;
+        sums->NextResiduals(2) = scale * off;
+        sums->TakeRows(2);
+        sums->DependsOnPoint();
+        sums->DependsOn(layout.TranslationBlock());
+      }
+    }
     const double residual = free ? 0 : height;
     const double scale = sums->AddGroup(1, residual * residual, kSurfaceContactKernel, weight * contact.share);
     if (!sums->derivatives()) continue;

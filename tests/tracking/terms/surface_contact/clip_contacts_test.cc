@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "data_tools/body/builtin_body.h"
@@ -283,6 +285,66 @@ TEST(ClipBalance, SaysNothingOfFastMotion) {
     const double acceleration = std::abs(0.2 * 4 * M_PI * M_PI * std::sin(2 * M_PI * t / kRate));
     EXPECT_TRUE(acceleration <= 6 || clip.Frame(t).Get<BalanceTerm>().is_empty()) << t;
   }
+}
+
+using Held = std::vector<std::optional<Vector3d>>;
+
+constexpr double kHeldRate = 30;
+constexpr size_t kHeldFrames = 30;
+
+Held HoldPath(const std::function<Vector3d(double)>& place, std::vector<char> touches = {},
+              std::vector<char> begins = {}) {
+  std::vector<Vector3d> path;
+  std::vector<double> timestamps;
+  for (size_t t = 0; t < kHeldFrames; ++t) {
+    timestamps.push_back(static_cast<double>(t) / kHeldRate);
+    path.push_back(place(timestamps.back()));
+  }
+  if (touches.empty()) touches.assign(kHeldFrames, 1);
+  if (begins.empty()) begins.assign(kHeldFrames, 0);
+  return HeldPlaces(path, touches, begins, timestamps);
+}
+
+int Count(const Held& held) {
+  int count = 0;
+  for (const auto& place : held) count += place ? 1 : 0;
+  return count;
+}
+
+/// To and fro by 1 cm about a place, over whole periods: held in their mean.
+TEST(HeldPlaces, APointThatStaysIsHeldAtItsMean) {
+  const Held held = HoldPath([](double s) { return Vector3d(1 + 0.01 * std::sin(2 * M_PI * 5 * s), 2, 3); });
+  ASSERT_EQ(Count(held), static_cast<int>(kHeldFrames));
+  for (const auto& place : held) EXPECT_LT((*place - Vector3d(1, 2, 3)).norm(), 1e-12);
+}
+
+/// Also one that slides so slowly that it touches: its stretches end at their edges.
+TEST(HeldPlaces, WhatSlidesIsFree) {
+  for (const double speed : {0.15, 0.25, 1.0}) {
+    const Held held = HoldPath([&](double s) { return Vector3d(speed * s, 0, 3); });
+    // The rest after the last whole stretch may be too short to tell.
+    EXPECT_LE(Count(held), static_cast<int>(kHeldFrames) / 3) << speed;
+    EXPECT_FALSE(held.front()) << speed;
+  }
+}
+
+/// Half a turn a second on the ball of the foot, whose heel is 20 cm behind.
+TEST(HeldPlaces, AFootThatTurnsIsHeldAtItsBallAlone) {
+  EXPECT_EQ(Count(HoldPath([](double) { return Vector3d(0, 0, 3); })), static_cast<int>(kHeldFrames));
+  const auto heel = [](double s) { return Vector3d(0.2 * std::cos(M_PI * s), 0, 3 + 0.2 * std::sin(M_PI * s)); };
+  EXPECT_EQ(Count(HoldPath(heel)), 0);
+}
+
+TEST(HeldPlaces, TouchesCutsAndTimeEndAStretch) {
+  const auto still = [](double) { return Vector3d(0, 1, 3); };
+  std::vector<char> touches(kHeldFrames, 0), begins(kHeldFrames, 0);
+  for (size_t t = 10; t < 16; ++t) touches[t] = 1;  // 0.17 s
+  EXPECT_EQ(Count(HoldPath(still, touches)), 0);
+  touches[16] = touches[17] = 1;
+  EXPECT_EQ(Count(HoldPath(still, touches)), 8);
+  begins[13] = 1;
+  EXPECT_EQ(Count(HoldPath(still, touches, begins)), 0);
+  EXPECT_THROW(HoldPath(still, {1}), std::invalid_argument);
 }
 
 }  // namespace

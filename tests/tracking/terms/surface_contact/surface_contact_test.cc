@@ -44,6 +44,9 @@ std::unique_ptr<FrameScene> MakeScene(CameraKnowledge knowledge, uint64_t seed, 
     term.contacts.push_back({v, k % 2 == 0, 0.002 * k});
     heights.push_back(
         term.up.dot(PointEvaluator::VertexPosition(kinematics, v, &cache) + scene->layout.BodyPlace(scene->state)));
+    if (k % 4 != 0) continue;
+    term.contacts.back().held_m = PointEvaluator::VertexPosition(kinematics, v, &cache) +
+                                  scene->layout.BodyPlace(scene->state) + Vector3d(0.02, 0.01 * k, -0.05);
   }
   std::sort(heights.begin(), heights.end());
   term.level_m = heights[4];
@@ -52,7 +55,9 @@ std::unique_ptr<FrameScene> MakeScene(CameraKnowledge knowledge, uint64_t seed, 
 
 void CheckAgainstTwin(const FrameScene& scene) {
   const auto& term = scene.data.Get<SurfaceContactTerm>();
-  const auto count = static_cast<Eigen::Index>(term.contacts.size());
+  Eigen::Index count = 0;
+  for (const auto& contact : term.contacts) count += contact.held_m ? 3 : 1;
+  const Vector3d across[2] = {term.up.unitOrthogonal(), term.up.cross(term.up.unitOrthogonal())};
   MatrixXd J = MatrixXd::Zero(count, scene.layout.num_columns);
   VectorXd r = VectorXd::Zero(count);
   double cost = 0;
@@ -62,8 +67,8 @@ void CheckAgainstTwin(const FrameScene& scene) {
         twin::SeedFrame(scene.body, scene.layout, scene.state, scene.betas, scene.log_focal, column);
     cost = 0;
     below = 0;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const auto& contact = term.contacts[static_cast<size_t>(k)];
+    Eigen::Index row = 0;
+    for (const auto& contact : term.contacts) {
       twin::Vector3<Jet> x = seeded.body.Vertices({contact.vertex})[0];
       if (scene.layout.knowledge == CameraKnowledge::kWeak) {
         twin::Vector3<Jet> t;
@@ -73,8 +78,21 @@ void CheckAgainstTwin(const FrameScene& scene) {
         }
         x += twin::Vector3<Jet>(t[1], t[2], Jet(scene.layout.camera.fx) / exp(t[0]));
       }
+      if (contact.held_m) {
+        const twin::Vector3<Jet> off = x - contact.held_m->cast<Jet>();
+        Jet both[2];
+        for (int a = 0; a < 2; ++a) both[a] = across[a].cast<Jet>().dot(off) / Jet(term.hold_sigma_m);
+        const RobustValue robust = GemanMcClure(both[0].a * both[0].a + both[1].a * both[1].a, kHoldKernel);
+        cost += 0.5 * kHoldWeight * term.weight * robust.rho;
+        for (const Jet& one : both) {
+          const double scale = std::sqrt(kHoldWeight * term.weight * robust.weight);
+          r[row] = scale * one.a;
+          J(row++, column) = scale * one.v[0];
+        }
+      }
       const twin::Vector3<Jet> up = term.up.cast<Jet>();
       Jet height = (up.dot(x) - Jet(term.level_m + contact.rest_m)) / Jet(term.sigma_m);
+      const Eigen::Index k = row++;
       if (!contact.touches && height.a >= 0) continue;
       below += contact.touches ? 0 : 1;
       const RobustValue robust = GemanMcClure(height.a * height.a, kSurfaceContactKernel);
@@ -101,7 +119,10 @@ TEST(SurfaceContact, AboveTheGroundOnlyTouchingPointsCost) {
   auto scene = MakeScene(CameraKnowledge::kKnown, 53);
   auto& term = scene->data.Get<SurfaceContactTerm>();
   term.level_m -= 10;
-  for (auto& contact : term.contacts) contact.touches = false;
+  for (auto& contact : term.contacts) {
+    contact.touches = false;
+    contact.held_m.reset();
+  }
   EXPECT_EQ(Evaluate(*scene).cost, 0);
   EXPECT_EQ(Evaluate(*scene).gradient.norm(), 0);
   term.contacts[3].touches = true;
@@ -114,10 +135,10 @@ TEST(SurfaceContact, RowsDoNotDependOnTheState) {
   FrameEvaluator evaluator;
   FrameRows rows;
   evaluator.EvaluateRows(scene->layout, scene->data, scene->state, *scene, FrameAccumulator::Mode::kRows, &rows);
-  EXPECT_EQ(rows.groups.size(), 9U);
+  EXPECT_EQ(rows.groups.size(), 12U);
   scene->data.Get<SurfaceContactTerm>().level_m -= 10;
   evaluator.EvaluateRows(scene->layout, scene->data, scene->state, *scene, FrameAccumulator::Mode::kRows, &rows);
-  EXPECT_EQ(rows.groups.size(), 9U);
+  EXPECT_EQ(rows.groups.size(), 12U);
 }
 
 }  // namespace
