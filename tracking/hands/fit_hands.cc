@@ -32,8 +32,8 @@ struct HandWindow {
 
 struct FittedHand {
   HandSkeleton skeleton;
-  std::unique_ptr<HandProblem> problem;  ///< null: not fitted in this window
-  HandProblem::Sigma sigma;
+  std::unique_ptr<HandProblem> problem = nullptr;  ///< null: not fitted in this window
+  HandProblem::Sigma sigma = {};
 };
 
 /// Values from which a hand's summary is made.

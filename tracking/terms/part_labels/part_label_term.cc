@@ -424,7 +424,7 @@ void PartLabelMatches::Correspond(const FrameLayout& layout, const FrameState& s
   Weigh(weight);
 }
 
-int PartLabelMatches::MostRowsOfMask() { return 3 * kMaxSilhouette; }
+int PartLabelMatches::MaxMaskRows() { return 3 * kMaxSilhouette; }
 
 void AddMatches(const PartLabelSource& source, bool of_silhouette, FrameAccumulator* sums) {
   const std::shared_ptr<const PartLabelMatches> held = source.Get(sums->layout());

@@ -105,7 +105,7 @@ class PartLabelMatches : public PartLabelSource {
     return {std::shared_ptr<const PartLabelMatches>(), this};
   }
   /// The largest number of rows that a mask has.
-  static int MostRowsOfMask();
+  static int MaxMaskRows();
   /// Field of a part, or of the silhouette (0); null if there are too few pixels.
   [[nodiscard]] const DistanceField* Field(uint8_t part) const;
 

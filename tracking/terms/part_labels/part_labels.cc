@@ -46,7 +46,7 @@ void KeptMatches::Add(std::shared_ptr<PartLabelMatches> matches, std::shared_ptr
   const std::lock_guard<std::mutex> lock(mutex_);
   *slot = std::move(matches);
   slots_.push_back(slot);
-  if (slots_.size() <= most_) return;
+  if (slots_.size() <= capacity_) return;
   forgotten = std::move(*slots_.front());
   slots_.front()->reset();
   slots_.pop_front();
@@ -73,21 +73,21 @@ void LabelledFrame::StartRound(const FrameLayout& layout, Round round, bool late
   if (const std::shared_ptr<PartLabelMatches> known = kept_.Find(matches_); known != nullptr) {
     Correspond(layout, known.get());
   } else if (later) {
-    num_rows_ = {0, PartLabelMatches::MostRowsOfMask()};
+    num_rows_ = {0, PartLabelMatches::MaxMaskRows()};
     num_person_pixels_ = 1;
   } else {
     Get(layout);
   }
 }
 
-PartLabelRounds::PartLabelRounds(const ClipTermInput& clip, size_t most_kept)
+PartLabelRounds::PartLabelRounds(const ClipTermInput& clip, size_t max_kept)
     : labels_(*clip.input.part_labels),
       options_(clip.options.part_labels),
       skinner_(std::make_shared<const Skinner>(*clip.layout.model)),
       num_threads_(clip.num_threads),
       stature_m_(clip.stature_m),
       is_thinned_(IsMask(labels_) && clip.input.keypoints != nullptr),
-      most_kept_(most_kept),
+      max_kept_(max_kept),
       kept_(size_t(labels_.num_frames())),
       frames_(size_t(labels_.num_frames())) {}
 
@@ -100,7 +100,7 @@ std::vector<char> PartLabelRounds::SparseFrames() const {
 
 void PartLabelRounds::BeginRounds(const std::vector<int>& coarse_frames, bool in_windows) {
   later_ = is_thinned_ && in_windows;
-  if (later_) kept_.SetMost(most_kept_);
+  if (later_) kept_.SetCapacity(max_kept_);
   is_used_.assign(frames_.size(), is_thinned_ ? 0 : 1);
   if (!is_thinned_) return;
   std::vector<double> steps;

@@ -43,15 +43,15 @@ inline constexpr size_t kKeptMatches = 1100;
 /// Matches in the order in which they were computed.
 class KeptMatches {
  public:
-  explicit KeptMatches(size_t most) : most_(most) {}
-  void SetMost(size_t most) { most_ = most; }
+  explicit KeptMatches(size_t capacity) : capacity_(capacity) {}
+  void SetCapacity(size_t capacity) { capacity_ = capacity; }
   /// Null: they were forgotten.
   std::shared_ptr<PartLabelMatches> Find(const std::shared_ptr<PartLabelMatches>& slot);
   /// Puts them into the slot of their frame, and empties that of those that were computed first if there are too many.
   void Add(std::shared_ptr<PartLabelMatches> matches, std::shared_ptr<PartLabelMatches>* slot);
 
  private:
-  size_t most_;
+  size_t capacity_;
   std::mutex mutex_;
   std::deque<std::shared_ptr<PartLabelMatches>*> slots_;
 };
@@ -92,8 +92,8 @@ class LabelledFrame : public PartLabelSource {
 
 class PartLabelRounds : public ClipTerm {
  public:
-  /// `most_kept`: number of frames whose matches are kept.
-  explicit PartLabelRounds(const ClipTermInput& clip, size_t most_kept = kKeptMatches);
+  /// `max_kept`: number of frames whose matches are kept.
+  explicit PartLabelRounds(const ClipTermInput& clip, size_t max_kept = kKeptMatches);
 
   void Observe(SequenceProblem* problem) override;
   [[nodiscard]] std::vector<char> SparseFrames() const override;
@@ -102,8 +102,6 @@ class PartLabelRounds : public ClipTerm {
   void StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) override;
 
  private:
-  /// Selects the frames whose labels are used, and their weight.
-
   const PartLabelSequence& labels_;
   PartLabelOptions options_;
   std::shared_ptr<const Skinner> skinner_;
@@ -113,7 +111,7 @@ class PartLabelRounds : public ClipTerm {
   std::vector<char> is_used_;  ///< T; empty before the first round
   double weight_ = 1;
   bool later_ = false;  ///< matches are computed when they are asked for
-  size_t most_kept_;
+  size_t max_kept_;
   KeptMatches kept_;
   std::vector<std::unique_ptr<LabelledFrame>> frames_;  ///< T; null in frames that are not used
 };
