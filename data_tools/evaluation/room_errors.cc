@@ -24,6 +24,7 @@ namespace {
 
 constexpr int kRoomWindow = 100, kRoomFirstFrames = 2;
 constexpr double kStandingAnkleMps = 0.1;
+constexpr int kNumFacePoints = 5;  // of COCO's landmarks, the first ones
 
 struct Bone {
   const char* name;
@@ -85,14 +86,40 @@ MatrixX3d MovedByYaw(const MatrixX3d& points, const MatrixX3d& fitted, const Mat
 struct Compared {
   std::vector<MatrixX3d> track, truth;
   std::vector<double> times;
+  std::vector<int> landmarks;  ///< whose places are compared; the others may be NaN
 };
+
+/// Landmarks of the face that nine tenths of the frames have, and all from the shoulders down.
+std::vector<int> LandmarksOfMost(const std::vector<MatrixX3d>& truth) {
+  std::array<int, 17> seen{};
+  int frames = 0;
+  for (const MatrixX3d& points : truth) {
+    if (points.rows() != 17) continue;
+    ++frames;
+    for (int k = 0; k < 17; ++k) seen[size_t(k)] += points.row(k).allFinite() ? 1 : 0;
+  }
+  std::vector<int> landmarks;
+  for (int k = 0; k < 17; ++k) {
+    if (k >= kNumFacePoints || 10 * seen[size_t(k)] >= 9 * frames) landmarks.push_back(k);
+  }
+  return landmarks;
+}
+
+std::vector<MatrixX3d> RowsOf(const std::vector<MatrixX3d>& frames, const std::vector<int>& rows) {
+  std::vector<MatrixX3d> chosen;
+  for (const MatrixX3d& points : frames) chosen.emplace_back(points(rows, Eigen::all));
+  return chosen;
+}
 
 Compared FramesOfBoth(const std::vector<MatrixX3d>& track, const std::vector<MatrixX3d>& truth,
                       const std::vector<double>& timestamps) {
   Compared both;
+  both.landmarks = LandmarksOfMost(truth);
+  const auto known = [&](const MatrixX3d& points) {
+    return points.rows() == 17 && points(both.landmarks, Eigen::all).allFinite();
+  };
   for (size_t t = 0; t < track.size(); ++t) {
-    const bool known = track[t].rows() == 17 && truth[t].rows() == 17 && track[t].allFinite() && truth[t].allFinite();
-    if (!known) continue;
+    if (!known(track[t]) || !known(truth[t])) continue;
     both.track.push_back(track[t]);
     both.truth.push_back(truth[t]);
     both.times.push_back(timestamps[t]);
@@ -120,20 +147,21 @@ void MeasureBones(Compared* both, RoomErrors* errors) {
 
 void MeasurePlaces(const Compared& both, RoomErrors* errors) {
   const size_t T = both.track.size();
+  const std::vector<MatrixX3d> track = RowsOf(both.track, both.landmarks), truth = RowsOf(both.truth, both.landmarks);
   std::vector<MatrixX3d> x, g;
   MatrixX3d hips(T, 3), true_hips(T, 3);
   for (size_t t = 0; t < T; ++t) {
     hips.row(static_cast<Eigen::Index>(t)) = Hip(both.track[t]).transpose();
     true_hips.row(static_cast<Eigen::Index>(t)) = Hip(both.truth[t]).transpose();
-    x.emplace_back(both.track[t].rowwise() - Hip(both.track[t]).transpose());
-    g.emplace_back(both.truth[t].rowwise() - Hip(both.truth[t]).transpose());
+    x.emplace_back(track[t].rowwise() - Hip(both.track[t]).transpose());
+    g.emplace_back(truth[t].rowwise() - Hip(both.truth[t]).transpose());
   }
   const MatrixX3d all_x = StackedFrames(x), all_g = StackedFrames(g);
   const Matrix3d yaw = YawBetween(all_x, all_g);
   errors->g_mpjpe_m = (all_x * yaw.transpose() - all_g).rowwise().norm().mean();
-  errors->w_mpjpe_m = WindowError(both.track, both.truth, kRoomFirstFrames, MovedByYaw);
-  errors->wa_mpjpe_m = WindowError(both.track, both.truth, kRoomWindow, MovedByYaw);
-  const GlobalErrors global = MeasureGlobalErrors(both.track, both.truth, hips, true_hips);
+  errors->w_mpjpe_m = WindowError(track, truth, kRoomFirstFrames, MovedByYaw);
+  errors->wa_mpjpe_m = WindowError(track, truth, kRoomWindow, MovedByYaw);
+  const GlobalErrors global = MeasureGlobalErrors(track, truth, hips, true_hips);
   errors->w_mpjpe_100_m = global.w_mpjpe_100_m;
   errors->wa_mpjpe_100_m = global.wa_mpjpe_100_m;
   errors->rte = global.rte;

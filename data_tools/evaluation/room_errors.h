@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Errors of a track in the room: against true joints in a world whose vertical is known.
 ///
-/// X: the track's COCO landmarks in its own world (y up, ground at y = 0), G: the true ones (y up). Frames in which a
-/// landmark of either is not finite are left out. X is first scaled by (sum of the true limb bones' medians) / (sum of
-/// the track's): size is not observable with one camera. Y: the yaw, a rotation about y, one for the clip or window.
+/// X: the track's COCO landmarks in its own world (y up, ground at y = 0), G: the true ones (y up). Landmarks of the
+/// face that the truth lacks in more than a tenth of the frames, as an ear that one of two cameras does not see, are
+/// left out; then frames in which another landmark of either is not finite. X is first scaled by (sum of the true limb
+/// bones' medians) / (sum of the track's): size is not observable with one camera. Y: the yaw, a rotation about y, one
+/// for the clip or window.
 ///   room_g_mpjpe_mm      ‖Y (X − hip X) − (G − hip G)‖, hip: the middle of the hips of each frame. A lean counts,
 ///                        which a similarity per frame hides
 ///   room_w_mpjpe_mm      windows of 100 frames, yaw and place fitted on the first two frames

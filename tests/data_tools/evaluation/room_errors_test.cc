@@ -151,6 +151,18 @@ TEST(RoomErrors, FramesThatNobodyKnowsAreLeftOut) {
   EXPECT_THROW(MeasureRoomErrors(track, {}, {}), std::invalid_argument);
 }
 
+TEST(RoomErrors, AnEarThatIsNeverSeenIsLeftOut) {
+  std::vector<MatrixX3d> track = Walk(), truth = Walk();
+  for (MatrixX3d& points : track) points.row(3).array() += 1;  // would be an error of 1.7 m in one of 17
+  for (MatrixX3d& points : truth) points.row(3).setConstant(std::nan(""));
+  const RoomErrors e = MeasureRoomErrors(track, truth, Times());
+  EXPECT_EQ(e.frames, kFrames);
+  EXPECT_NEAR(e.g_mpjpe_m, 0, 1e-9);
+  EXPECT_NEAR(e.wa_mpjpe_100_m, 0, 1e-9);
+  for (MatrixX3d& points : truth) points.row(9).setConstant(std::nan(""));
+  EXPECT_EQ(MeasureRoomErrors(track, truth, Times()).frames, 0) << "without a wrist there is no person";
+}
+
 TEST(RoomErrors, OfATrackAreInItsOwnWorld) {
   Track track;
   track.camera = MakePinhole(1280, 720, 1000);

@@ -5,9 +5,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
@@ -21,6 +23,7 @@
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
 #include "tracking/terms/ground_contact/ground_contact.h"
+#include "tracking/terms/landmarks.h"
 #include "tracking/terms/surface_contact/surface_contact.h"
 
 namespace bodyloom {
@@ -242,7 +245,32 @@ void MoveGrounds(const std::vector<ContactPoint>& points, const std::vector<std:
   }
 }
 
-/// By point and frame: where it is held on the ground, in the frame of the states; soles only (docs/lab/world.md).
+/// By frame and leg: a landmark of its foot is seen. Everything counts as seen in clips without 2D joints.
+std::vector<std::array<bool, 2>> FindSeenFeet(const SequenceProblem& problem) {
+  const BodyModel& body = *problem.layout.model;
+  std::array<std::array<int, 2>, 2> joints{};
+  for (const int leg : {0, 1}) {
+    const std::string side = leg == 0 ? "l_" : "r_";
+    joints[size_t(leg)] = {body.FindJoint(side + "ankle"), body.FindJoint(side + "foot")};
+  }
+  std::vector<std::array<bool, 2>> seen(problem.frames.size(), {false, false});
+  bool any = false;
+  for (size_t t = 0; t < seen.size(); ++t) {
+    for (const LandmarkObservation& observation : problem.frames[t].Get<LandmarkTerm>().seen) {
+      any = true;
+      for (const CompiledPoint::Bone& bone : observation.point->bones) {
+        for (const size_t leg : {0, 1}) {
+          if (bone.joint == joints[leg][0] || bone.joint == joints[leg][1]) seen[t][leg] = true;
+        }
+      }
+    }
+  }
+  if (!any) seen.assign(seen.size(), {true, true});
+  return seen;
+}
+
+/// By point and frame: where it is held on the ground, in the frame of the states; soles only (docs/lab/world.md), and
+/// not where their foot is not seen, as it rests where the frames around left it.
 std::vector<std::vector<std::optional<Vector3d>>> FindHeld(const SequenceProblem& problem,
                                                            const std::vector<ContactPoint>& points,
                                                            const std::vector<std::vector<char>>& touches,
@@ -252,13 +280,14 @@ std::vector<std::vector<std::optional<Vector3d>>> FindHeld(const SequenceProblem
   for (size_t t = 1; t < T; ++t) {
     if (problem.frames[t].ground != problem.frames[t - 1].ground) begins[t] = 1;
   }
+  const std::vector<std::array<bool, 2>> seen = FindSeenFeet(problem);
   std::vector<std::vector<std::optional<Vector3d>>> held(num_points, std::vector<std::optional<Vector3d>>(T));
   for (size_t k = 0; k < num_points; ++k) {
     if (!points[k].sole) continue;
     std::vector<Vector3d> path(T, Vector3d::Zero());
     std::vector<char> touching(T, 0);
     for (size_t t = 0; t < T; ++t) {
-      if (touches[t].empty() || touches[t][k] == 0) continue;
+      if (touches[t].empty() || touches[t][k] == 0 || !seen[t][size_t(points[k].leg)]) continue;
       touching[t] = 1;
       path[t] = all.places[t].col(static_cast<Eigen::Index>(k));
     }
