@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/run_options.h"
 #include "apps/track_options.h"
 #include "data_tools/formats/printable.h"
 #include "geometry/base/check.h"

@@ -4,8 +4,13 @@
 
 #include <string>
 
+#include "pipelines/track/track_people_in_videos.h"
 #include "pipelines/track/track_request.h"
 #include "pipelines/track/view_inputs.h"
+
+namespace CLI {
+class App;
+}
 
 namespace CLI {
 class App;
@@ -32,5 +37,12 @@ void AddTrackOptions(CLI::App& app, TrackRequest* request, bool* quiet);
 void AddKnownOfRigOptions(CLI::App& app, KnownOfRig* known, bool* same_lens, const std::string& group);
 /// Those of AddTrackOptions() with several views.
 void AddTrackViewsOptions(CLI::App& app, TrackViewsRequest* request, bool* quiet);
+
+// Options of `bodyloom run`, except those of its outputs.
+
+/// Binds the fields of the request except `out`, `overlay` and `report` to their options; VIDEO is also positional.
+void AddRunOptions(CLI::App& app, TrackPeopleClipRequest* request);
+/// The same for one or more videos.
+void AddRunVideosOptions(CLI::App& app, TrackPeopleInVideosRequest* request);
 
 }  // namespace bodyloom

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/progress.h"
-#include "apps/run_options.h"
+#include "apps/track_options.h"
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "pipelines/track/run_estimate.h"

@@ -15,7 +15,6 @@
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
 #include "pipelines/detect/detect_people.h"
-#include "pipelines/detect/find_turn.h"
 #include "pipelines/detect/upright_people.h"
 #include "pipelines/files.h"
 #include "pipelines/track/track_people_clip.h"

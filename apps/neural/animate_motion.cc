@@ -6,7 +6,6 @@
 #include <string>
 
 #include "apps/neural/animate_options.h"
-#include "apps/neural/command_line.h"
 #include "apps/neural/neural_verbs.h"
 #include "apps/progress.h"
 #include "apps/shown_motion_options.h"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipelines/neural/animation.h"
+#include "pipelines/neural/motion/animate_motion.h"
 
 namespace CLI {
 class App;
@@ -24,5 +25,9 @@ void AddDeviceOptions(CLI::App* verb, AnimationRequest* request);
 
 /// Prints a line if frames have no fit.
 void PrintFramesWithoutFit(const AnimationSummary& summary);
+
+/// Command lines that repeat a job, stored in output files.
+/// "bodyloom animate motion --run run …": the options that affect the result, without those left at their defaults.
+std::string CommandLine(const AnimateMotionRequest& request);
 
 }  // namespace bodyloom

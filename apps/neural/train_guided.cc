@@ -7,7 +7,6 @@
 
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
-#include "apps/neural/training_report.h"
 #include "apps/progress.h"
 #include "pipelines/neural/guided/train_guided_renderer.h"
 #include "pipelines/neural/photo/people_data.h"

@@ -6,7 +6,6 @@
 
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
-#include "apps/neural/training_report.h"
 #include "apps/progress.h"
 #include "pipelines/neural/lifter/train_lifter_network.h"
 #include "pipelines/report_text.h"

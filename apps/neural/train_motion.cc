@@ -8,7 +8,6 @@
 
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
-#include "apps/neural/training_report.h"
 #include "apps/progress.h"
 #include "apps/shown_motion_options.h"
 #include "geometry/base/check.h"

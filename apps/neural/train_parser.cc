@@ -7,7 +7,6 @@
 
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
-#include "apps/neural/training_report.h"
 #include "apps/progress.h"
 #include "apps/usage_error.h"
 #include "data_tools/datasets/single_person_dataset.h"

@@ -6,7 +6,6 @@
 
 #include "apps/neural/neural_verbs.h"
 #include "apps/neural/training_options.h"
-#include "apps/neural/training_report.h"
 #include "apps/progress.h"
 #include "pipelines/neural/photo/people_data.h"
 #include "pipelines/neural/photo/train_photo_renderer.h"

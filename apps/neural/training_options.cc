@@ -2,9 +2,12 @@
 #include "apps/neural/training_options.h"
 
 #include <CLI/CLI.hpp>
+#include <iostream>
+#include <stdexcept>
 
 #include "apps/usage_error.h"
 #include "pipelines/clip_span.h"
+#include "pipelines/report_text.h"
 
 namespace bodyloom {
 
@@ -64,6 +67,28 @@ void AddMotionDataOptions(CLI::App* verb, MotionDataRequest* request) {
                    "classes and normals of the tracked body within it");
   verb->add_option("--part-labels", request->part_labels,
                    "For a video: DensePose's parts (.npz), for classes and, without --mask, the silhouette");
+}
+
+void PrintLosses(const RendererTraining& training, const char* perceptual, const char* network) {
+  for (const std::string& loss : training.losses_off) std::cout << "loss switched off: " << loss << "\n";
+  if (perceptual == nullptr || !training.perceptual_random_features) return;
+  std::cout << perceptual << " by a random-feature substitute (no " << network << " weights given)\n";
+}
+
+void PrintStep(const TrainingOutcome& outcome, int steps) {
+  std::cout << "step " << outcome.steps << " of " << steps << " in " << ClockText(outcome.seconds) << "\n";
+}
+
+void PrintEnd(const RendererTraining& training, const std::string& out) {
+  std::cout << "wrote " << training.checkpoint << "\n" << std::flush;
+  if (training.status == TrainingStatus::kNoProgress) std::cout << training.message << "\n";
+  RequireNotStopped(training, out);
+}
+
+void RequireNotStopped(const TrainingOutcome& outcome, const std::string& out) {
+  if (outcome.status == TrainingStatus::kStopped) {
+    throw std::runtime_error(out + ": " + outcome.message + "; go on with --resume");
+  }
 }
 
 }  // namespace bodyloom

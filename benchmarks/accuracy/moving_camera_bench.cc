@@ -6,7 +6,7 @@
 ///                                [--background points|furnished|blank|crowd] [--write FOLDER] [--json F]
 ///
 /// The first frames of each motion at 30 a second before a synthetic camera of known focal length
-/// (data_tools/synthesis/clips/synth_camera_path.h), with a detector's noise, toes and heels included. What the tracker
+/// (data_tools/synthesis/clips/synth_camera.h), with a detector's noise, toes and heels included. What the tracker
 /// is told of the camera:
 ///   path        where it was
 ///   scale       the same without a length: translations divided by 3.7

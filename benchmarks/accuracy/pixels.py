@@ -28,7 +28,7 @@ def write_numbered(folder, frames):
 
 
 def masks(path):
-    """(T, H, W), 1 where the person is: data_tools/observations/mask_runs.h."""
+    """(T, H, W), 1 where the person is: data_tools/observations/part_labels.h."""
     with np.load(path) as file:
         width, height = file["image_size"]
         pictures = np.zeros((len(file["mask_box"]), height, width), np.uint8)

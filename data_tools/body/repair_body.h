@@ -8,7 +8,7 @@
 ///                         weights equal to within the tolerance; their shares in joints and landmarks are added up
 ///   unreferenced vertices go, unless joints or landmarks are computed from them
 ///   holes                 get faces between their vertices, where the caller brings what triangulates them; the new
-///                         faces come last, with parts and UV of the faces beside them (append_faces.h)
+///                         faces come last, with parts and UV of the faces beside them
 ///
 /// Not repaired, because that requires a decision about the shape: edges of more than two faces, pinched vertices, flat
 /// faces (removing them would leave a hole), several components, self-intersections.

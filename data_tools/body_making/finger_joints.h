@@ -13,7 +13,7 @@
 #pragma once
 
 #include "data_tools/body_making/cage.h"
-#include "data_tools/body_making/refined_cage.h"
+#include "data_tools/body_making/subdivision.h"
 #include "geometry/body/body_model.h"
 
 namespace bodyloom {

@@ -10,7 +10,6 @@
 #include "data_tools/body_making/finger_joints.h"
 #include "data_tools/body_making/left_half_arrays.h"
 #include "data_tools/body_making/pose_correctives.h"
-#include "data_tools/body_making/refined_cage.h"
 #include "data_tools/body_making/subdivision.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/printable.h"

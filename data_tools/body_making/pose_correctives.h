@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "data_tools/body_making/left_half_arrays.h"
-#include "data_tools/body_making/refined_cage.h"
+#include "data_tools/body_making/subdivision.h"
 #include "geometry/body/body_model.h"
 #include "geometry/body/hand_skeleton.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/datasets/human36m.h"
+#include "data_tools/datasets/video_truth.h"
 
 #include <algorithm>
 #include <array>

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "data_tools/descriptors/describe_track.h"
-#include "data_tools/formats/mapped_npy.h"
 #include "data_tools/formats/ndarray.h"
+#include "data_tools/formats/npy_stream.h"
 #include "geometry/base/check.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/track_edits.h"

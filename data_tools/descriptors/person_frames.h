@@ -40,7 +40,7 @@ class PersonFrames {
   static constexpr float kMaxSpeed = 5;       ///< at which they are clamped
 
   /// Describes all frames (data_tools/descriptors/describe_track.h): 12 bytes per texel and frame on disk, cached in
-  /// memory as far as available (data_tools/formats/mapped_npy.h). Throws std::invalid_argument when the track does not
+  /// memory as far as available (data_tools/formats/npy_stream.h). Throws std::invalid_argument when the track does not
   /// fit the body or no frame has a result; std::runtime_error when the scratch file cannot be written. Keeps
   /// references to body and track.
   PersonFrames(const BodyModel& body, const Track& track, const PersonFramesOptions& options);

@@ -6,11 +6,7 @@
 
 #include "data_tools/body/body_landmarks.h"
 #include "data_tools/estimates/estimate_arrays.h"
-#include "data_tools/estimates/gem_reader.h"
-#include "data_tools/estimates/hmr_readers.h"
-#include "data_tools/estimates/phalp_reader.h"
-#include "data_tools/estimates/prompthmr_reader.h"
-#include "data_tools/estimates/sam3d_body_reader.h"
+#include "data_tools/estimates/estimate_readers.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/inflate.h"
 #include "data_tools/formats/json_reader.h"

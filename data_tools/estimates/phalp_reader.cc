@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/estimates/phalp_reader.h"
+#include "data_tools/estimates/estimate_readers.h"
 
 #include <algorithm>
 #include <cmath>

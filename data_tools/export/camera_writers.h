@@ -12,8 +12,10 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "data_tools/export/export_scene.h"
+#include "data_tools/observations/load_cameras.h"
 #include "geometry/scene/camera.h"
 #include "geometry/scene/world_frame.h"
 
@@ -50,5 +52,27 @@ std::string Pose2SimCameraTable(const std::string& name, const Camera& camera, c
 std::string Pose2SimMetadata();
 void WritePose2SimCalibration(const std::string& path, const std::string& name, const Camera& camera,
                               const WorldFrame& world);
+
+// Writes calibrated cameras for other programs, in the frame of the cameras' poses, metres. For a rig
+// (geometry/scene/rig.h) this is the frame of its first camera: x right, y down, z forward. Clocks and standard
+// deviations have no place in these forms. All functions throw std::invalid_argument without cameras and for a camera
+// that is no pinhole with an image size; names must be distinct.
+
+/// Pose2Sim's Calib.toml, as of one camera (above): names of letters, digits, '_' and '-'; distortion k1
+/// k2 p1 p2. Throws std::invalid_argument for a camera with further coefficients, which the form does not hold.
+std::string Pose2SimRigText(const std::vector<NamedCamera>& cameras);
+
+/// YAML of cv::FileStorage: a list `cameras` of maps with
+///   name                      text
+///   image_width, image_height  pixels
+///   camera_matrix             3×3
+///   distortion_coefficients   1×5 (k1 k2 p1 p2 k3), or 1×8 with k4 k5 k6
+///   rotation, translation     3×3, 3×1: camera from world
+std::string OpenCvRigText(const std::vector<NamedCamera>& cameras);
+
+/// A COLMAP text model: a folder with cameras.txt (PINHOLE, or FULL_OPENCV where the lens distorts), images.txt (one
+/// image NAME.png a camera) and points3D.txt without points. Image i has camera i, from 1. Throws std::runtime_error
+/// when a file cannot be written.
+void WriteColmapRig(const std::string& folder, const std::vector<NamedCamera>& cameras);
 
 }  // namespace bodyloom

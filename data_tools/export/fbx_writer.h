@@ -14,7 +14,7 @@
 ///   camera      focal length on a film 36 mm wide; the principal point is the film offset. No distortion. None for
 ///               weak perspective or an unknown image size
 ///   texture     embedded PNG, on the material's diffuse colour
-/// Source: the format as in fbx_node.h; names and meaning of properties by Autodesk's FBX SDK reference.
+/// Source: the format as in fbx_document.h; names and meaning of properties by Autodesk's FBX SDK reference.
 #pragma once
 
 #include <string>

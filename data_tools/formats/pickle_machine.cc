@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "data_tools/formats/pickle_text.h"
 #include "data_tools/formats/printable.h"
 #include "geometry/base/check.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/formats/pickle_text.h"
+#include "data_tools/formats/pickle_machine.h"
 
 #include <algorithm>
 #include <charconv>

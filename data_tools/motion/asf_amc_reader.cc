@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/asf_amc_reader.h"
+#include "data_tools/motion/motion_readers.h"
 
 #include <algorithm>
 #include <cctype>

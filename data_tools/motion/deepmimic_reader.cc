@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/motion/deepmimic_reader.h"
+#include "data_tools/motion/motion_readers.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

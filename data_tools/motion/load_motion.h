@@ -20,7 +20,7 @@ struct LoadMotionOptions {
 };
 
 /// `summary`, when given, is filled for retargeted skeletons; `warnings`, when requested, gets a line for each fault
-/// that was passed over (bvh_reader.h, amass.h). Throws std::runtime_error in one line: what was found and what was
+/// that was passed over (motion_readers.h, amass.h). Throws std::runtime_error in one line: what was found and what was
 /// expected.
 Motion LoadMotion(const std::string& path, const LoadMotionOptions& options = {}, RetargetSummary* summary = nullptr,
                   std::vector<std::string>* warnings = nullptr);

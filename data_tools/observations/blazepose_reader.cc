@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/blazepose_reader.h"
+#include "data_tools/observations/detection_readers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "data_tools/formats/printable.h"
 #include "data_tools/observations/frame_numbers.h"
 #include "data_tools/observations/hand_and_face_points.h"
-#include "data_tools/observations/landmark_names.h"
+#include "data_tools/observations/keypoint_conventions.h"
 
 namespace bodyloom {
 namespace {

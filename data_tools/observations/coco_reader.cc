@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/coco_reader.h"
+#include "data_tools/observations/detection_readers.h"
 
 #include <map>
 #include <stdexcept>

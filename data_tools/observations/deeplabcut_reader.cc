@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/deeplabcut_reader.h"
+#include "data_tools/observations/detection_readers.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,7 +10,7 @@
 #include "data_tools/formats/csv_lines.h"
 #include "data_tools/formats/printable.h"
 #include "data_tools/observations/frame_numbers.h"
-#include "data_tools/observations/landmark_names.h"
+#include "data_tools/observations/keypoint_conventions.h"
 #include "geometry/base/check.h"
 
 namespace bodyloom {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/keypoint_array_reader.h"
+#include "data_tools/observations/detection_readers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "data_tools/formats/printable.h"
-#include "data_tools/observations/freemocap_reader.h"
 #include "data_tools/observations/keypoint_conventions.h"
 #include "data_tools/observations/people.h"
 #include "geometry/base/check.h"

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bodyloom {
@@ -46,5 +47,19 @@ const KeypointConvention* ConventionOfCount(size_t num_points);
 /// Sets `convention`, null before the first person of a file, to ConventionOfCount(). Throws std::runtime_error naming
 /// `place` when there is none, or another than that of the people before.
 void RequireConventionOfCount(size_t num_points, const std::string& place, const KeypointConvention** convention);
+
+// Landmarks by the names that people and detectors give them.
+
+/// Returns a landmark's name in lower case with underscores, the side in front: "LEFT_FOOT_INDEX" → "left_big_toe",
+/// "left_big toe" → "left_big_toe", "LShoulder", "shoulder_l" and "leftShoulder" → "left_shoulder", "hip", "hips" and
+/// "pelvis" without a side → "mid_hip", "thorax" → "neck". Other names come back in that spelling.
+std::string LandmarkNameFrom(std::string_view text);
+
+/// Returns the convention that has these names (as LandmarkNameFrom() gives them) in this order, for 133 and 136 names
+/// the one that has the first of them (ConventionOfCount()), else one called "custom".
+KeypointConvention ConventionOfNames(const std::vector<std::string>& names);
+
+/// Returns true if a name is one of COCO's, a toe, a heel, or the neck, mid-hip or top of the head: a person's.
+bool IsPersonLandmark(const std::string& name);
 
 }  // namespace bodyloom

@@ -3,7 +3,7 @@
 ///
 /// Read: a folder of OpenPose, MMPose or Ultralytics JSON files (or a folder of such folders, one per view), their
 /// frames in one file, COCO results or annotations and AlphaPose, easy_ViTPose's JSON, BlazePose/MediaPipe dumps,
-/// DeepLabCut's CSV, AIST++ keypoints2d pickles, FreeMoCap's 2D .npy and bare arrays (keypoint_array_reader.h),
+/// DeepLabCut's CSV, AIST++ keypoints2d pickles, FreeMoCap's 2D .npy and bare arrays (detection_readers.h),
 /// VideoPose3D's .npz, the project's own .npz. JSON may be JSON Lines, begin with a byte-order mark and hold NaN or
 /// null, which are missing landmarks in all formats. In folders, files that begin with a dot are passed over. If all
 /// coordinates are in [0, 1], or [−1, 1] for OpenPose, they are fractions of the image, whose size must then be known.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/vitpose_reader.h"
+#include "data_tools/observations/detection_readers.h"
 
 #include <algorithm>
 #include <charconv>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "data_tools/formats/printable.h"
-#include "data_tools/observations/landmark_names.h"
+#include "data_tools/observations/keypoint_conventions.h"
 #include "geometry/base/check.h"
 
 namespace bodyloom {

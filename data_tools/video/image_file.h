@@ -51,4 +51,19 @@ inline std::string FrameFile(const std::filesystem::path& folder, int t) {
 /// std::runtime_error naming the path.
 void WriteAlphaPng(const std::string& path, int width, int height, std::span<const uint8_t> bgra);
 
+// Reads photographs with arbitrary colours, depth and transparency, and notes what was converted or lost.
+
+struct PhotoFile {
+  Image image;  ///< upright, eight bits per channel; transparent pixels are composited over white
+  /// Width × height, 0 transparent to 255; empty if the file has no transparency, or no or all pixels are transparent.
+  std::vector<uint8_t> alpha;
+  /// Deviations from a plain 8-bit RGB image, each half a sentence for the user: "grey-scale: …", "16 bits a channel:
+  /// …", "CMYK: …", "transparent: …".
+  std::vector<std::string> notes;
+};
+
+/// Reads a still image of one of these formats. Throws std::runtime_error naming the file when it cannot be
+/// decoded, and for a truncated JPEG or PNG (the missing part would be decoded as grey or black).
+PhotoFile ReadPhoto(const std::string& path);
+
 }  // namespace bodyloom

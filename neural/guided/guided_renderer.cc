@@ -2,7 +2,6 @@
 #include "neural/guided/guided_renderer.h"
 
 #include "geometry/base/check.h"
-#include "neural/guided/draw_pose.h"
 #include "neural/guided/guided_model.h"
 #include "neural/guided/guided_tensors.h"
 #include "neural/training/checkpoint.h"

@@ -46,4 +46,11 @@ GuidedSource CroppedEach(const GuidedSource& source, std::span<const CodeBox> bo
 RenderedPerson RenderedPersonOf(const GuidedResult& result, const GuidedPseudo& pseudo, int64_t b, const CodeBox& box,
                                 int multiple, int size);
 
+/// Renders one pose through the three networks.
+/// The networks see the box of cells around the body grown by `reach` pixels; pixels farther from the body are
+/// background. reach 0: the whole window. The image is empty if the frame shows no body. `share` (may be null):
+/// computed share of the window.
+RenderedPerson DrawGuided(GuidedModel* model, const GuidedSource& source, const PhotoFrame& frame,
+                          const PseudoImage& pseudo, int reach, double* share);
+
 }  // namespace bodyloom

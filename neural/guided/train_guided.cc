@@ -12,13 +12,9 @@
 #include "geometry/base/prefetcher.h"
 #include "neural/base/device.h"
 #include "neural/guided/choose_photos.h"
-#include "neural/guided/draw_pose.h"
 #include "neural/guided/guided_batches.h"
 #include "neural/guided/guided_tensors.h"
-#include "neural/guided/loss_balance.h"
 #include "neural/guided/source_maps.h"
-#include "neural/losses/contextual_loss.h"
-#include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
 #include "neural/training/renderer_trainer.h"
 

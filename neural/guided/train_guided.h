@@ -5,7 +5,7 @@
 ///   L_Render = L1 + λ_1 L_VGG + λ_2 L_CX + λ_3 L_cAdv + λ_4 L_KL        (Yoon et al., CVPR 2021, Section 3.1)
 /// L_VGG: mean absolute differences of VGG-16's conv 1-2, 2-2, 3-2 and 4-2; L_CX: contextual loss on conv 3-2; L_cAdv:
 /// the loss of a patch discriminator conditioned on the true labels; L_KL: the divergence per element of the code. The
-/// λ come from loss_balance.h: in the first `balance_steps` steps RenderNet is trained by L1 alone. Without SilNet and
+/// λ come from image_losses.h: in the first `balance_steps` steps RenderNet is trained by L1 alone. Without SilNet and
 /// GarNet the silhouette of RenderNet is trained by L1 too.
 ///
 /// The three networks are trained simultaneously, each on true inputs (masking of the target: guided_batches.h), which

@@ -8,7 +8,6 @@
 #include "geometry/base/check.h"
 #include "geometry/base/prefetcher.h"
 #include "neural/base/runtime.h"
-#include "neural/lifter/lifter_loss.h"
 #include "neural/lifter/lifter_module.h"
 #include "neural/training/optimizers.h"
 #include "neural/training/training_loop.h"

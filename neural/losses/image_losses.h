@@ -7,6 +7,8 @@
 #pragma once
 
 #include <torch/torch.h>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geometry/base/check.h"
@@ -60,5 +62,72 @@ inline torch::Tensor KlLoss(const torch::Tensor& mean, const torch::Tensor& log_
                  "KL loss: means of shape ", mean.sizes(), " and log variances of shape ", log_variance.sizes());
   return -0.5 * (1 + log_variance - mean.square() - log_variance.exp()).sum() / mean.size(0);
 }
+
+// GAN losses of discriminator and generator from logits D.
+//
+//   kNonSaturating: discriminator ½ (mean softplus(−D(real)) + mean softplus(D(fake))), generator mean
+//     softplus(−D(fake)) (binary cross entropy; Goodfellow et al. 2014, its non-saturating form for the generator);
+//   kLeastSquares: ½ (mean (D(real) − 1)² + mean D(fake)²), mean (D(fake) − 1)² (Mao et al. 2017).
+// Several scales are summed, as Wang et al., CVPR 2018 do.
+//
+// In the discriminator's step pass D(fake.detach()); in the generator's step disable requires_grad of the
+// discriminator's parameters to avoid computing their gradients.
+
+enum class GanLossKind { kNonSaturating, kLeastSquares };
+
+/// One tensor of logits per scale, of any shape; as many real as fake, at least one.
+torch::Tensor DiscriminatorLoss(const std::vector<torch::Tensor>& real_logits,
+                                const std::vector<torch::Tensor>& fake_logits,
+                                GanLossKind kind = GanLossKind::kNonSaturating);
+torch::Tensor GeneratorLoss(const std::vector<torch::Tensor>& fake_logits,
+                            GanLossKind kind = GanLossKind::kNonSaturating);
+
+// Contextual similarity and loss of two sets of features that need not be aligned.
+//
+// Features are centred by the target's mean over batch and positions and normalised to unit length over channels. For
+// positions i of the image and j of the target, with the cosine c_ij:
+//   d_ij = (1 − c_ij)/2,  d̃_ij = d_ij / (min_k d_ik + 1e-5),  w_ij = exp((1 − d̃_ij)/h),  CX_ij = w_ij / Σ_k w_ik,
+//   CX = mean_j max_i CX_ij  (1 if every target feature occurs in the image),  loss = −log CX, mean over the batch.
+// Sources: Mechrez et al., "The Contextual Loss for Image Transformation with Non-Aligned Data", ECCV 2018, and its
+// published code (h = 0.5); the evaluation code of Men et al., CVPR 2020 (ADGAN; h = 0.1).
+
+struct ContextualOptions {
+  double bandwidth = 0.5;  ///< h: 0.5 for the loss as published, 0.1 for ADGAN's metric
+  /// Positions beyond this number are subsampled at random (65² as in the published code); 0: use all. Memory of the
+  /// backward pass grows quadratically.
+  int64_t max_points = 65 * 65;
+  uint64_t seed = 0;  ///< of the subsampling; images and targets of the same size use the same positions
+};
+
+/// B×C×h×w and B×C×h'×w' → CX of each of the B pairs, in (0, 1].
+torch::Tensor ContextualSimilarity(const torch::Tensor& features, const torch::Tensor& target,
+                                   const ContextualOptions& options = {});
+
+/// mean_b −log CX_b.
+torch::Tensor ContextualLoss(const torch::Tensor& features, const torch::Tensor& target,
+                             const ContextualOptions& options = {});
+
+/// Weights that bring losses to the scale of a reference loss, determined once and then constant.
+///
+/// During the first `warmup` steps the losses are measured; then λ_i = mean(reference)/mean(loss_i), clamped to [1e-3,
+/// 1e2], for the rest of the run (0 for a loss that was 0 throughout). Yoon et al., CVPR 2021, choose theirs
+/// "empirically … that all the losses have comparable scale" without stating them.
+class LossBalance {
+ public:
+  LossBalance(int num_losses, int warmup);
+
+  /// Adds a step of the warm-up; does nothing after it.
+  void Measure(double reference, std::span<const double> losses);
+  [[nodiscard]] bool IsSet() const;
+  /// 0 until the weights are set.
+  [[nodiscard]] double Weight(int loss) const;
+
+  /// State for a checkpoint, as doubles: steps measured, sums (the reference's first), weights.
+  [[nodiscard]] torch::Tensor* state() { return &state_; }
+
+ private:
+  int num_losses_, warmup_;
+  torch::Tensor state_;
+};
 
 }  // namespace bodyloom

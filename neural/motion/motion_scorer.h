@@ -7,8 +7,8 @@
 #include <memory>
 #include <optional>
 
+#include "neural/metrics/lpips.h"
 #include "neural/metrics/pixel_metrics.h"
-#include "neural/metrics/temporal_lpips.h"
 #include "neural/motion/frame_tensors.h"
 #include "neural/motion/motion_frame.h"
 #include "neural/motion/motion_model.h"

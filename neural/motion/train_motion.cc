@@ -8,9 +8,7 @@
 
 #include "geometry/base/check.h"
 #include "neural/base/device.h"
-#include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
-#include "neural/motion/motion_batches.h"
 #include "neural/motion/motion_scorer.h"
 #include "neural/motion/roll_out.h"
 #include "neural/networks/patch_discriminator.h"

@@ -8,7 +8,7 @@
 /// (padding 1); Wang et al., CVPR 2018 (several scales; padding 2, and 3×3 averages of stride 2 between the scales,
 /// padded pixels not counted). Weights start as N(0, 0.02²), biases at 0; convolutions before IN have no bias, which IN
 /// would remove.
-/// All return logits (no sigmoid): see neural/losses/gan_losses.h.
+/// All return logits (no sigmoid): see neural/losses/image_losses.h.
 #pragma once
 
 #include <torch/torch.h>

@@ -3,7 +3,7 @@
 ///
 ///   loss = − mean log softmax(answers)_c,   c: the true class, over the pixels of the mask that truly show the person
 /// Half of the crops contain a pixel where classes meet, the others are anywhere; each has a random light
-/// (neural/parser/image_crops.h). Optimisation: neural/parser/image_trainer.h.
+/// (neural/parser/image_crops.h).
 ///
 /// Writes into run_dir: checkpoint.bin and metrics.csv. A run resumed from a checkpoint ends with the same bytes as an
 /// uninterrupted one (same binary, machine and threads).

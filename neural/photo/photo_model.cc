@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "neural/photo/photo_model.h"
 
+#include <algorithm>
+#include <span>
+#include <vector>
+
 #include "geometry/base/check.h"
+#include "neural/base/device.h"
 #include "neural/networks/uv_sampler.h"
 
 namespace bodyloom {
+namespace {
 
 using torch::Tensor;
-
-namespace {
 
 constexpr int kFillLevels = 5;  ///< reaches about 32 pixels outwards
 
@@ -86,6 +90,33 @@ MultiScaleDiscriminator PhotoDiscriminator(const PhotoConfig& config) {
   return MultiScaleDiscriminator(
       PatchDiscriminatorOptions{config.RenderChannels() + 3, p.discriminator_width, p.discriminator_layers, 2},
       p.discriminator_scales);
+}
+
+RenderedPerson RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach) {
+  const torch::NoGradGuard no_grad;
+  const int S = pose.size;
+  const size_t pixels = static_cast<size_t>(S) * S;
+  RenderedPerson rendered;
+  rendered.size = S;
+  rendered.image.assign(3 * pixels, 0);
+  rendered.alpha.assign(pixels, 0);
+  if (std::all_of(pose.parts.begin(), pose.parts.end(), [](uint8_t part) { return part == 0; })) return rendered;
+  const PhotoWindow window =
+      reach < 0 ? PhotoWindow{0, 0, S, S} : WindowAround(pose, reach, model->config.SmallestSide());
+  const PoseTensors seen = PoseOf(std::span(&pose, 1), std::span(&window, 1));
+  const PhotoResult result = model->Render(model->Project(features, seen), seen.body);
+  const auto paste = [&](const torch::Tensor& tensor, std::vector<float>* planar) {
+    const std::vector<float> whole = HostValues<float>(tensor);
+    auto from = whole.begin();
+    for (int64_t c = 0; c < tensor.size(1); ++c) {
+      for (int y = 0; y < window.height; ++y, from += window.width) {
+        std::copy_n(from, window.width, planar->begin() + ((c * S + window.y + y) * S + window.x));
+      }
+    }
+  };
+  paste(result.image, &rendered.image);
+  paste(result.alpha, &rendered.alpha);
+  return rendered;
 }
 
 }  // namespace bodyloom

@@ -22,6 +22,7 @@
 
 #include <torch/torch.h>
 
+#include "neural/base/rendered_person.h"
 #include "neural/networks/patch_discriminator.h"
 #include "neural/networks/residual_generator.h"
 #include "neural/photo/photo_config.h"
@@ -54,5 +55,10 @@ TORCH_MODULE(PhotoModel);
 
 /// The discriminators of the training; their input is the image with R.
 MultiScaleDiscriminator PhotoDiscriminator(const PhotoConfig& config);
+
+/// Renders one pose from the features of a source.
+/// `features`: 1×C×U×U from PhotoModelImpl::Complete. Only the window within `reach` of the body is computed, the rest
+/// is background; a negative reach computes the whole frame. A frame without a body gives background. No gradients.
+RenderedPerson RenderPhoto(PhotoModel model, const torch::Tensor& features, const PhotoFrame& pose, int reach);
 
 }  // namespace bodyloom

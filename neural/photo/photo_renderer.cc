@@ -5,7 +5,7 @@
 
 #include "geometry/base/check.h"
 #include "neural/base/device.h"
-#include "neural/photo/render_photo.h"
+#include "neural/photo/photo_model.h"
 #include "neural/training/checkpoint.h"
 
 namespace bodyloom {

@@ -3,7 +3,7 @@
 ///
 ///   L_G = 10 L_p + 5 L_face + L_tex + L_adv + L_α       (Sarkar et al., ECCV 2020, Section 3.5)
 /// L_p: mean absolute differences of VGG-19's features relu1_1, 2_1, 3_1, 4_1, 5_1, unweighted; L_face, L_tex:
-/// neural/photo/photo_losses.h, for heads facing the camera; L_adv: binary cross entropy of a multi-scale discriminator
+/// neural/photo/photo_batch.h, for heads facing the camera; L_adv: binary cross entropy of a multi-scale discriminator
 /// conditioned on the feature image R (without gradient through it), used and updated in every step from `gan_from` on;
 /// L_α, not in the paper: binary cross entropy of alpha against the labels' foreground. Adam 2e-4, β₁ 0.5, linear decay
 /// over the last half, for generator and discriminator.
@@ -23,7 +23,7 @@
 #include "neural/metrics/person_scores.h"
 #include "neural/networks/named_weights.h"
 #include "neural/photo/photo_config.h"
-#include "neural/photo/photo_pairs.h"
+#include "neural/training/photo_partner.h"
 #include "neural/training/training_run.h"
 #include "render/texture/photo_frame.h"
 

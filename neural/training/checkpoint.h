@@ -80,4 +80,15 @@ Model LoadModel(const std::string& path, const Config& config, int num_threads, 
   return model;
 }
 
+// Writes and reads named tensors in the file format of checkpoints.
+
+using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
+
+/// Tensors of any device; types float, double, half, bfloat16, int64, int32, int16, int8, uint8, bool.
+void WriteTensorFile(const std::string& path, const NamedTensors& tensors);
+
+/// Reads tensors in the file's order, on the CPU, after checking the file's size, all declared sizes and the checksum.
+/// Throws std::runtime_error, one line that begins with the path.
+NamedTensors ReadTensorFile(const std::string& path);
+
 }  // namespace bodyloom

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "data_tools/video/photo_file.h"
+#include "data_tools/video/image_file.h"
 
 namespace bodyloom {
 

@@ -16,7 +16,6 @@
 #include "geometry/base/percentile.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/detect/cut_masks.h"
-#include "pipelines/detect/find_turn.h"
 #include "pipelines/detect/upright_people.h"
 #include "pipelines/files.h"
 #include "pipelines/report_json.h"

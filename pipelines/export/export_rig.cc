@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "data_tools/export/rig_writers.h"
+#include "data_tools/export/camera_writers.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/printable.h"
 #include "data_tools/observations/load_cameras.h"

@@ -7,7 +7,7 @@
 
 namespace bodyloom {
 
-/// Output format (data_tools/export/rig_writers.h), in the frame of the cameras' poses.
+/// Output format (data_tools/export/camera_writers.h), in the frame of the cameras' poses.
 enum class RigForm {
   kToml,    ///< Pose2Sim's Calib.toml
   kOpenCv,  ///< YAML of cv::FileStorage

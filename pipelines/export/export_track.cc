@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "data_tools/export/c3d_writer.h"
+#include "data_tools/export/angle_writers.h"
 #include "data_tools/export/camera_writers.h"
 #include "data_tools/export/export_scene.h"
 #include "data_tools/export/fbx_writer.h"
@@ -24,12 +24,11 @@
 #include "data_tools/motion/track_io.h"
 #include "geometry/base/check.h"
 #include "geometry/base/stopwatch.h"
+#include "geometry/biomechanics/track_angles.h"
 #include "geometry/body/hand_skeleton.h"
 #include "geometry/math/rotation.h"
-#include "geometry/scene/track.h"
 #include "geometry/scene/track_edits.h"
 #include "pipelines/body_of_track.h"
-#include "pipelines/export/export_angles.h"
 #include "pipelines/files.h"
 #include "render/view/floor.h"
 #include "render/view/follow_view.h"
@@ -37,6 +36,29 @@
 
 namespace bodyloom {
 namespace {
+
+// Exports the joint angles of a track, and the events of gait.
+
+/// "angles are written to .csv or .mot (OpenSim), found …" for a path of another extension; "" for these.
+std::string AnglesPathFault(const std::string& out) {
+  const std::string extension = LowerExtension(out);
+  if (extension == ".csv" || extension == ".mot") return "";
+  return "angles are written to .csv or .mot (OpenSim), found " + out;
+}
+
+/// Writes the angles as CSV (the pelvis' rotation first) or, to a path that ends in .mot, for OpenSim (its tilt first,
+/// data_tools/export/angle_writers.h), the gait as JSON to `events` if that is not empty, and returns the gait. Throws
+/// std::invalid_argument for a body without the joints, and of .mot when every frame is lost.
+GaitReport ExportAngles(const BodyModel& body, const Track& track, const WorldFrame& world, const std::string& out,
+                        const std::string& events) {
+  const bool mot = LowerExtension(out) == ".mot";
+  const TrackAngles angles =
+      AnglesOfTrack(body, track, world, mot ? PelvisOrder::kTiltFirst : PelvisOrder::kRotationFirst);
+  GaitReport gait = AnalyseGait(body, track, world);
+  WriteFileAtomically(out, mot ? AnglesMot(angles) : AnglesCsv(angles));
+  if (!events.empty()) WriteFileAtomically(events, GaitJson(gait));
+  return gait;
+}
 
 constexpr int kBodyJointsOfSmpl = 22;
 

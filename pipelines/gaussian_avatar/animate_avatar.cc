@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "data_tools/avatar/gaussian_ply.h"
+#include "data_tools/avatar/avatar_file.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/motion_tools.h"
 #include "data_tools/motion/track_io.h"

@@ -26,7 +26,6 @@
 #include "pipelines/runs/run_config.h"
 #include "render/garment/clip_clothes.h"
 #include "render/gaussian_avatar/cloth_bones.h"
-#include "render/gaussian_avatar/cloth_gaussians.h"
 #include "render/gaussian_avatar/learning/loose_gaussians.h"
 #include "render/gaussian_avatar/learning/pose_refiner.h"
 #include "render/gaussian_avatar/skin_gaussians.h"

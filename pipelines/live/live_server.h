@@ -11,9 +11,11 @@
 /// their host, so that no page of another site reaches it by way of a name that points here.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 
+#include "geometry/body/body_model.h"
 #include "pipelines/live/live_state.h"
 
 namespace bodyloom {
@@ -44,5 +46,13 @@ class LiveServer {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Http> http_;
 };
+
+// The page that shows a body live: the script of a clip's page (assets/page/viewer.js) without a clip.
+
+/// One HTML file, which needs nothing but the server's /body.glb and /events.
+std::string LivePageHtml(const std::string& title);
+
+/// The body in T-pose as .glb, for the page to pose: nodes and names as in glb_writer.h, one person, "person_0".
+std::string LiveBodyGlb(const BodyModel& body, const Eigen::VectorXd& betas);
 
 }  // namespace bodyloom

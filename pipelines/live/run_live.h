@@ -15,7 +15,6 @@
 
 #include "data_tools/video/live_video.h"
 #include "geometry/base/callbacks.h"
-#include "pipelines/live/live_delays.h"
 #include "pipelines/live/live_state.h"
 #include "pipelines/track/track_request.h"
 #include "tracking/detection/frame_detector.h"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "neural/base/runtime.h"
-#include "neural/metrics/temporal_lpips.h"
+#include "neural/metrics/lpips.h"
 #include "pipelines/neural/weights_folder.h"
 
 namespace bodyloom {

@@ -26,7 +26,7 @@ std::string FileIn(const std::string& folder, const std::string& name) {
   return (std::filesystem::path(folder) / name).string();
 }
 
-std::string PhotoFile(const std::string& folder, size_t photo) {
+std::string PhotoTrackFile(const std::string& folder, size_t photo) {
   return FileIn(folder, Concatenate("photo_", photo, ".npz"));
 }
 
@@ -90,7 +90,7 @@ std::vector<uint8_t> LabelsIn(const std::string& path, const Image& texture) {
 std::vector<std::string> PhotoPersonFiles(const std::string& folder, int num_photos) {
   std::vector<std::string> files = {FileIn(folder, "body.npz"), FileIn(folder, "texture.png"),
                                     FileIn(folder, "sources.png"), FileIn(folder, "labels.png")};
-  for (int i = 0; i < num_photos; ++i) files.push_back(PhotoFile(folder, static_cast<size_t>(i)));
+  for (int i = 0; i < num_photos; ++i) files.push_back(PhotoTrackFile(folder, static_cast<size_t>(i)));
   files.push_back(FileIn(folder, "person.json"));
   return files;
 }
@@ -102,7 +102,7 @@ void WritePhotoPerson(const std::string& folder, const PhotoPerson& person) {
   const int width = person.texture.width, height = person.texture.height;
   WriteOrRemove(FileIn(folder, "labels.png"),
                 person.labels.empty() ? Image() : NumbersImage(person.labels, width, height));
-  for (size_t i = 0; i < person.tracks.size(); ++i) WriteTrack(PhotoFile(folder, i), person.tracks[i]);
+  for (size_t i = 0; i < person.tracks.size(); ++i) WriteTrack(PhotoTrackFile(folder, i), person.tracks[i]);
   WriteFileAtomically(FileIn(folder, "person.json"), ToJson(person));
 }
 
@@ -137,7 +137,7 @@ PhotoPerson ReadPhotoPerson(const std::string& folder, const std::string& bare_b
   const std::string sources = FileIn(folder, "sources.png");
   if (std::filesystem::exists(sources)) person.sources = ReadImage(sources);
   person.labels = LabelsIn(FileIn(folder, "labels.png"), person.texture);
-  person.tracks.push_back(ReadTrack(PhotoFile(folder, 0)));
+  person.tracks.push_back(ReadTrack(PhotoTrackFile(folder, 0)));
   person.betas = person.tracks[0].motion.betas;
   return person;
 }

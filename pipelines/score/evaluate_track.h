@@ -6,13 +6,33 @@
 #include <vector>
 
 #include "data_tools/evaluation/evaluation.h"
+#include "data_tools/evaluation/held_out_views.h"
 #include "geometry/base/callbacks.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/rig.h"
 #include "geometry/scene/track.h"
-#include "pipelines/score/rig_clip.h"
 
 namespace bodyloom {
+
+// Reads one person's multi-view clip from files: a calibration and the detections of each camera of a rig.
+
+/// Detections of one camera.
+struct RigDetections {
+  std::string view;        ///< name of the camera in the calibration
+  int person = 0;          ///< in the order of LinkPeople()
+  std::string detections;  ///< any file of 2D joints (load_detections.h), in the pixels of the camera's video
+};
+
+/// "VIEW=FILE" or "VIEW:PERSON=FILE". Throws RequestError saying what was expected.
+RigDetections RigDetectionsFromText(const std::string& text);
+
+/// Reads the clip from the track's first frame on. The cameras are synchronised: equal frame numbers are the same
+/// moment, and the frame of the track's first timestamp is looked up in the detections of `view`, the camera that the
+/// track was fitted to. Joints are triangulated (triangulated_clip.h). Throws RequestError for fewer than two cameras
+/// or if `view` is none of them, std::runtime_error naming a file that cannot be used or whose frames do not reach the
+/// track. Warnings of the readers are messages.
+MultiViewClip ReadRigClip(const std::string& cameras, const std::vector<RigDetections>& seen, const std::string& view,
+                          const Track& track, const PipelineCallbacks& callbacks = {});
 
 struct EvaluateTrackRequest {
   std::string track;  ///< .npz
@@ -21,7 +41,7 @@ struct EvaluateTrackRequest {
   /// Pose2Sim folder (calib_refined.json). Without this and `seen`: the track alone (evaluation.h).
   std::string truth;
   /// Instead of `truth`: detections of the person by two or more calibrated cameras of a rig; `cameras` is the
-  /// calibration, `view` the camera that the track was fitted to (rig_clip.h).
+  /// calibration, `view` the camera that the track was fitted to (FindRigClip()).
   std::vector<RigDetections> seen;
   /// The cameras of a `truth` that was tracked in several views (data_tools/observations/rig_io.h): the track is of one
   /// of them, `view` (data_tools/evaluation/rig_track_evaluation.h).
@@ -34,7 +54,7 @@ struct EvaluateTrackRequest {
   /// motions of other data sets such joints are compared besides.
   std::string joint_regressor;
   std::string cameras;   ///< AIST++: camera folder, empty: truth/cameras; RICH: the scene's; Human3.6M: *_camera.json
-  std::string sequence;  ///< AIST++: name of the clip; Human3.6M: "2/1", "S9/Directions 1" (human36m.h)
+  std::string sequence;  ///< AIST++: name of the clip; Human3.6M: "2/1", "S9/Directions 1" (video_truth.h)
   /// Camera that the track was fitted to; empty: c01 (AIST++), cam_01 (Pose2Sim), the first one (`rig`), the only one.
   std::string view;
   std::string json;  ///< EvaluationJson; empty: not written

@@ -11,7 +11,6 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/motion/track_io.h"
 #include "data_tools/video/image_file.h"
-#include "data_tools/video/video_frame_times.h"
 #include "data_tools/video/video_reader.h"
 #include "geometry/base/check.h"
 #include "geometry/scene/camera_path.h"

@@ -10,7 +10,7 @@
 #include "geometry/scene/hands_and_face.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/detect/detect_people.h"
-#include "pipelines/detect/find_turn.h"
+#include "pipelines/detect/upright_people.h"
 #include "pipelines/track/scene_inputs.h"
 #include "pipelines/track/track_request.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "data_tools/video/video_frame_times.h"
+#include "data_tools/video/video_reader.h"
 #include "geometry/base/check.h"
 
 namespace bodyloom {

@@ -21,7 +21,7 @@
 #include "render/garment/person_cloth.h"
 #include "render/image/image.h"
 #include "render/image/palette.h"
-#include "render/photo_avatar/parts_in_image.h"
+#include "render/photo_avatar/texel_labels.h"
 #include "render/texture/body_regions.h"
 #include "render/texture/complete/whole_texture.h"
 #include "render/view/overlay.h"

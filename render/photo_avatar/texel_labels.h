@@ -14,6 +14,7 @@
 
 #include "geometry/body/body_model.h"
 #include "geometry/math/arrays.h"
+#include "geometry/scene/camera.h"
 #include "geometry/uv_maps/uv_texels.h"
 #include "render/texture/body_regions.h"
 #include "render/texture/texture_extract.h"
@@ -32,5 +33,10 @@ struct PhotoLabels {
 std::vector<uint8_t> TexelLabels(const BodyModel& body, const UvTexelTable& table, const MatrixX3d& rest_vertices,
                                  std::span<const BodyRegion> regions, const Texture& seen,
                                  std::span<const PhotoLabels> photos);
+
+/// Body parts visible in an image.
+/// DensePose's parts 1 to 24, one per pixel of the camera's image; 0 off the body. `vertices_in_camera`: V×3, metres.
+std::vector<uint8_t> PartsInImage(const BodyModel& body, const MatrixX3d& vertices_in_camera, const Camera& camera,
+                                  int num_threads);
 
 }  // namespace bodyloom

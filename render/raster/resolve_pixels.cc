@@ -8,6 +8,7 @@
 
 #include "geometry/base/check.h"
 #include "geometry/base/parallel.h"
+#include "geometry/body/normals.h"
 #include "render/raster/raster_simd.h"
 #include "render/raster/resolve_simd.h"
 #include "render/raster/visible_points.h"

@@ -11,21 +11,18 @@
 
 #include "data_tools/avatar/avatar_file.h"
 #include "data_tools/body_making/make_builtin_body.h"
-#include "data_tools/datasets/human36m.h"
-#include "data_tools/datasets/rich_truth.h"
 #include "data_tools/datasets/video_truth.h"
-#include "data_tools/estimates/gem_reader.h"
-#include "data_tools/estimates/hmr_readers.h"
+#include "data_tools/estimates/estimate_readers.h"
 #include "data_tools/estimates/load_estimate.h"
 #include "data_tools/formats/zip.h"
 #include "data_tools/learned/lifter_weights_io.h"
 #include "data_tools/learned/parser_weights_io.h"
 #include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/motion/load_motion.h"
+#include "data_tools/observations/detection_readers.h"
 #include "data_tools/observations/load_detections.h"
 #include "data_tools/observations/observations_npz.h"
 #include "data_tools/observations/part_labels.h"
-#include "data_tools/observations/videopose3d_reader.h"
 #include "tests/fuzz/fuzz_targets.h"
 
 namespace bodyloom::fuzz {

@@ -14,7 +14,6 @@
 #include "data_tools/motion/motion_split.h"
 #include "data_tools/observations/densepose_iuv.h"
 #include "data_tools/video/image_file.h"
-#include "data_tools/video/video_frame_times.h"
 #include "data_tools/video/video_reader.h"
 #include "tests/fuzz/fuzz_accepts.h"
 #include "tests/support/toy_body.h"

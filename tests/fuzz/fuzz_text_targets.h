@@ -9,21 +9,13 @@
 #include <string>
 
 #include "data_tools/body_making/cage.h"
-#include "data_tools/motion/asf_amc_reader.h"
-#include "data_tools/motion/bvh_reader.h"
-#include "data_tools/motion/deepmimic_reader.h"
-#include "data_tools/observations/blazepose_reader.h"
-#include "data_tools/observations/coco_reader.h"
+#include "data_tools/motion/motion_readers.h"
 #include "data_tools/observations/colmap_reader.h"
-#include "data_tools/observations/deeplabcut_reader.h"
+#include "data_tools/observations/detection_readers.h"
 #include "data_tools/observations/load_camera_path.h"
 #include "data_tools/observations/load_cameras.h"
-#include "data_tools/observations/mmpose_reader.h"
-#include "data_tools/observations/openpose_reader.h"
 #include "data_tools/observations/pose2sim_toml.h"
 #include "data_tools/observations/rig_io.h"
-#include "data_tools/observations/ultralytics_reader.h"
-#include "data_tools/observations/vitpose_reader.h"
 #include "tests/fuzz/fuzz_accepts.h"
 
 namespace bodyloom::fuzz {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipelines/files.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+
+#include "pipelines/files.h"
 
 #include "geometry/base/callbacks.h"
 
@@ -75,5 +75,11 @@ TEST_F(Files, ReadingAndWritingTheSameFileIsAMistake) {
   EXPECT_THROW(RequireDistinct({}, {"a", "b", "./a"}), RequestError);
 }
 
+TEST(PeakMemory, IsThatOfAProcess) {
+  EXPECT_GT(PeakMemoryBytes(), size_t{1} << 20);
+  EXPECT_LT(PeakMemoryBytes(), size_t{1} << 36);
+}
+
 }  // namespace
+
 }  // namespace bodyloom::files_test

@@ -52,7 +52,7 @@ class OutputReader {
   }
 
  private:
-  // The range that training clamps to (neural/lifter/lifter_loss.cc).
+  // The range that training clamps to (neural/lifter/lifter_module.cc).
   static double Sigma(float log_sigma) { return std::exp(std::clamp(double{log_sigma}, -5.0, 1.0)); }
   [[nodiscard]] int TorsoIndex(int i) const {
     if (!mirrored_) return i;

@@ -46,7 +46,7 @@ void SetLimb(int limb, const LiftedLimb& guess, LiftedFrame* frame);
 /// (of one axis) and along the view (a coordinate's variance under the lifter's density is 4 σ²). Weight 1.
 LiftedLimb MeanLimb(const std::vector<LiftedLimb>& guesses, const Eigen::Matrix3d& camera_from_virtual);
 
-/// P(|error| ≤ radius) under the lifter's density (neural/lifter/lifter_loss.h): the error is r (σ_xy u_x,
+/// P(|error| ≤ radius) under the lifter's density (neural/lifter/lifter_module.h): the error is r (σ_xy u_x,
 /// σ_xy u_y, σ_z u_z) with u uniform on the sphere and r ~ Gamma(3), so P = ∫₀¹ F(radius / √(σ_xy²(1 − c²) + σ_z² c²))
 /// dc with F(r) = 1 − e^{−r}(1 + r + r²/2).
 double ProbabilityWithin(double radius, const Eigen::Vector2d& sigma);

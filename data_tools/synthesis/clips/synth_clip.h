@@ -23,7 +23,6 @@
 #include "data_tools/synthesis/clips/detection_noise.h"
 #include "data_tools/synthesis/clips/perturbed_motion.h"
 #include "data_tools/synthesis/clips/synth_camera.h"
-#include "data_tools/synthesis/clips/synth_camera_path.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/track.h"

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "data_tools/synthesis/lifter/floor_poses.h"
-#include "data_tools/synthesis/lifter/lifter_clips.h"
-#include "data_tools/synthesis/lifter/lifter_scene.h"
+#include "data_tools/synthesis/lifter/lifter_detections.h"
 #include "data_tools/synthesis/lifter/lifter_window_options.h"
 #include "data_tools/synthesis/lifter/pose_augmentation.h"
 #include "geometry/body/body_model.h"

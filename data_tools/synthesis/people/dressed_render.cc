@@ -4,10 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <stdexcept>
 #include <utility>
-#include <vector>
 
-#include "data_tools/synthesis/people/wardrobe.h"
 #include "geometry/base/check.h"
 #include "geometry/base/hash_random.h"
 #include "render/view/view_camera.h"
@@ -17,6 +17,50 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+
+/// Directions about the vertical.
+class AroundPerson {
+ public:
+  explicit AroundPerson(const Vector3d& up)
+      : up_(up), side_(up.cross(Vector3d::UnitZ()).normalized()), away_(side_.cross(up)) {}
+
+  /// Azimuth 0: from behind the person, π: from behind the camera.
+  [[nodiscard]] Vector3f At(double azimuth, double height) const {
+    const Vector3d level = std::cos(azimuth) * away_ + std::sin(azimuth) * side_;
+    return (std::cos(height) * level + std::sin(height) * up_).cast<float>().normalized();
+  }
+
+ private:
+  Vector3d up_, side_, away_;
+};
+
+PersonLight StudioLight(const AroundPerson& around, HashRandom* random) {
+  PersonLight light;
+  const double beside = random->Uniform(0.3, 1.1);
+  const double key = random->Uniform() < 0.5 ? -beside : beside;
+  const double key_height = random->Uniform(0.4, 0.9), fill_height = random->Uniform(0.0, 0.5);
+  light.towards = {around.At(key, key_height), around.At(-1.5 * key, fill_height)};
+  light.ambient = float(random->Uniform(0.5, 0.62));
+  const auto key_strength = float(random->Uniform(0.5, 0.65)), fill_strength = float(random->Uniform(0.1, 0.25));
+  light.strength = {key_strength, fill_strength};
+  return light;
+}
+
+PersonLight NaturalLight(const AroundPerson& around, HashRandom* random) {
+  PersonLight light;
+  const double hardness = random->Uniform();  // 0: an overcast sky, 1: the sun
+  constexpr double kBehindCamera = std::numbers::pi, kMaxBeside = 2.4;
+  const double key = kBehindCamera + random->Uniform(-kMaxBeside, kMaxBeside),
+               fill = random->Uniform(0, 2 * std::numbers::pi);
+  const double key_height = random->Uniform(0.15, 1.35), fill_height = random->Uniform(-0.2, 0.8);
+  light.towards = {around.At(key, key_height), around.At(fill, fill_height)};
+  light.ambient = float(0.85 - 0.5 * hardness + random->Uniform(-0.08, 0.08));
+  const auto key_strength = float(0.2 + 0.7 * hardness + random->Uniform(-0.05, 0.1)),
+             fill_strength = float(random->Uniform(0.02, 0.25));
+  light.strength = {key_strength, fill_strength};
+  light.shadow_softness_m = float(0.06 - 0.055 * hardness);
+  return light;
+}
 
 constexpr float kInnerShade = 0.7F;
 constexpr int kShadowMapPx = 640;
@@ -44,6 +88,57 @@ BodyModel MeshOf(const DressedPerson& person) {
 }
 
 }  // namespace
+
+std::string ToString(LightStyle style) { return style == LightStyle::kNatural ? "natural" : "studio"; }
+
+LightStyle LightStyleFromString(const std::string& name) {
+  for (const LightStyle style : {LightStyle::kStudio, LightStyle::kNatural}) {
+    if (ToString(style) == name) return style;
+  }
+  throw std::invalid_argument("light style \"" + name + "\", expected studio or natural");
+}
+
+PersonLight LightOfSeed(const Vector3d& up_in_camera, LightStyle style, uint64_t seed) {
+  HashRandom random(seed, {0x6c696768});
+  const AroundPerson around(up_in_camera);
+  return style == LightStyle::kNatural ? NaturalLight(around, &random) : StudioLight(around, &random);
+}
+
+DressedPerson::DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed,
+                             ClothesStyle style, ClothMaterial material)
+    : DressedPerson(body, betas, Outfit(body, kind, seed, style), seed, material) {}
+
+DressedPerson::DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed,
+                             ClothMaterial material)
+    : ClothCollisionBody(body, betas, outfit.offsets_m()), outfit_(std::move(outfit)) {
+  const LooseGarmentOptions options = LooseGarmentOf(outfit_, rest_joints(), seed);
+  if (options.length_m > 0) Wear(Cut(GarmentOptionsFor(material, options), seed));
+}
+
+LooseGarmentOptions LooseGarmentOf(const Outfit& outfit, const MatrixX3d& rest_joints, uint64_t seed) {
+  HashRandom random(seed, {0x6c6f6f73});
+  LooseGarmentOptions o;
+  const double pelvis = rest_joints(0, 1), knee = rest_joints(4, 1), ankle = rest_joints(7, 1),
+               spine1 = rest_joints(3, 1), spine2 = rest_joints(6, 1), shoulder = rest_joints(16, 1);
+  switch (outfit.kind()) {
+    case GarmentKind::kSuit:
+      o.length_m = 0;
+      break;
+    case GarmentKind::kSkirt:
+      o.waist_y_m = pelvis + random.Uniform(0.7, 0.9) * (spine1 - pelvis);
+      o.fullness = random.Uniform(0.4, 0.62);
+      o.length_m =
+          (o.waist_y_m - knee + random.Uniform(-0.12, 0.08) * (knee - ankle)) / std::sqrt(1 - 0.25 * o.fullness);
+      break;
+    case GarmentKind::kCoat:
+      o.waist_y_m = std::min(0.35 * spine1 + 0.65 * spine2, shoulder - 0.12);
+      o.fullness = random.Uniform(0.22, 0.32);
+      o.length_m = o.waist_y_m - (0.5 * rest_joints(1, 1) + 0.5 * knee) + random.Uniform(-0.05, 0.1);
+      o.slit_from_m = o.waist_y_m - pelvis + random.Uniform(-0.05, 0.05);
+      break;
+  }
+  return o;
+}
 
 DressedScene::DressedScene(const DressedPerson& person, const Camera& camera, uint64_t seed, int samples,
                            const PersonLight& light)

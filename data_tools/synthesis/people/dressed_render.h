@@ -2,7 +2,7 @@
 /// Renders images of a dressed person with per-pixel ground truth.
 ///
 /// The clothed body and the (two-sided) cloth are rendered to one visibility buffer per resolution:
-/// - image: samples × samples samples per pixel. Colour = pattern (wardrobe.h) · light (person_light.h), cloth's inner
+/// - image: samples × samples samples per pixel. Colour = pattern (wardrobe.h) · light (PersonLight), cloth's inner
 ///   side at 0.7 of it, averaged with the background;
 /// - labels and normals: at the pixel's centre; normals are interpolated, and flipped towards the viewer on cloth seen
 ///   from inside;
@@ -12,14 +12,20 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "data_tools/datasets/single_person_dataset.h"
-#include "data_tools/synthesis/people/dressed_person.h"
-#include "data_tools/synthesis/people/person_light.h"
+#include "data_tools/synthesis/people/outfit.h"
 #include "data_tools/synthesis/people/wardrobe.h"
+#include "geometry/body/body_model.h"
 #include "geometry/body/normals.h"
+#include "geometry/cloth/cloth_body.h"
+#include "geometry/cloth/cloth_material.h"
+#include "geometry/cloth/loose_garment.h"
+#include "geometry/math/arrays.h"
 #include "geometry/scene/camera.h"
 #include "render/image/image.h"
 #include "render/raster/resolve_pixels.h"
@@ -27,6 +33,61 @@
 #include "render/shadows/shadow_map.h"
 
 namespace bodyloom {
+
+// Lighting of a synthetic person.
+
+/// Studio: even ambient light, and two lights from above and beside or behind the person, without shadows: rims are
+/// bright, the rest shows mainly its colours. Natural: lights from any azimuth, more often from the camera's side, soft
+/// or hard, with shadows and ambient occlusion.
+enum class LightStyle { kStudio, kNatural };
+
+std::string ToString(LightStyle style);
+/// "studio" or "natural"; throws std::invalid_argument otherwise.
+LightStyle LightStyleFromString(const std::string& name);
+
+/// The colour of a surface with normal n is its colour, in image values, times
+///   ambient · o + Σ strength · r · max(0, n·towards),
+/// o: ambient openness (1 without shadows; render/shadows/shadow_map.h, a fifth of the occlusion compensated for light
+/// reflected by the person), r: the share of the light that reaches the point (1 without shadows).
+struct PersonLight {
+  float ambient = 0.45F;
+  std::array<Eigen::Vector3f, 2> towards = {Eigen::Vector3f::UnitY(),
+                                            Eigen::Vector3f::UnitY()};  ///< unit, camera frame
+  std::array<float, 2> strength = {0.6F, 0.2F};
+  std::optional<float> shadow_softness_m;  ///< half the width of a shadow's edge; absent: there are no shadows
+};
+
+/// Returns the light of a seed; the first of the two is the stronger. `up_in_camera`: unit; light comes from above.
+PersonLight LightOfSeed(const Eigen::Vector3d& up_in_camera, LightStyle style, uint64_t seed);
+
+// A body in the clothes of a synthetic person, with the simulation of its loose garment.
+//
+// The clothes close to the skin are the skinned surface moved outwards along its normals (outfit.h); the loose garment
+// is cloth pinned to that surface and colliding with it (geometry/cloth/cloth_run.h). It depends on the past motion:
+// the same pose at another speed gives other folds.
+
+/// Immutable, may be shared by threads. The body must outlive it.
+class DressedPerson : public ClothCollisionBody {
+ public:
+  /// Throws std::invalid_argument when the body does not have SMPL's joints or there are more betas than components.
+  DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, GarmentKind kind, uint64_t seed,
+                ClothesStyle style = ClothesStyle::kPatterned, ClothMaterial material = ClothMaterial::kCotton);
+  DressedPerson(BodyModel&&, const Eigen::VectorXd&, GarmentKind, uint64_t, ClothesStyle = ClothesStyle::kPatterned,
+                ClothMaterial = ClothMaterial::kCotton) = delete;
+
+  [[nodiscard]] const Outfit& outfit() const { return outfit_; }
+
+ private:
+  DressedPerson(const BodyModel& body, const Eigen::VectorXd& betas, Outfit outfit, uint64_t seed,
+                ClothMaterial material);
+  Outfit outfit_;
+};
+
+// Cut of the loose garment of a synthetic person's outfit.
+
+/// Options of the garment for an outfit's kind and seed on a body with these joints (J×3, T-pose, SMPL's tree), with
+/// the height of the pinned ring scaled accordingly; for a suit, which has none, length_m is 0.
+LooseGarmentOptions LooseGarmentOf(const Outfit& outfit, const MatrixX3d& rest_joints, uint64_t seed);
 
 // The background of a synthetic person: an image of gradients, noise and a few shapes, slowly panning.
 

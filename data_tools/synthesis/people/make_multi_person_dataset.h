@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "data_tools/synthesis/people/dressed_render.h"
 #include "data_tools/synthesis/people/outfit.h"
-#include "data_tools/synthesis/people/person_light.h"
 #include "geometry/body/body_model.h"
 #include "geometry/scene/track.h"
 

@@ -14,8 +14,7 @@
 
 #include "data_tools/datasets/single_person_dataset.h"
 #include "data_tools/synthesis/clips/synth_camera.h"
-#include "data_tools/synthesis/people/dressed_person.h"
-#include "data_tools/synthesis/people/person_light.h"
+#include "data_tools/synthesis/people/dressed_render.h"
 #include "geometry/body/body_model.h"
 #include "geometry/cloth/cloth_material.h"
 #include "geometry/scene/track.h"

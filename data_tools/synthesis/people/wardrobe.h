@@ -5,7 +5,7 @@
 /// Patterned clothes (ClothesStyle): top and bottom are each plain with probability 1/5, else of two different
 /// patterns. Everyday clothes: three tops in five and three bottoms in four are plain apart from fading; a tenth of the
 /// tops has a print on the chest; half of all are black, grey or white, a third of the bottoms blue as denim. Seams,
-/// collars, knit and the like: clothes_details.h.
+/// collars, knit and the like: ClothesDetails.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,10 +14,38 @@
 #include <cstdint>
 #include <optional>
 
-#include "data_tools/synthesis/people/clothes_details.h"
 #include "data_tools/synthesis/people/outfit.h"
 
 namespace bodyloom {
+
+/// Details of everyday clothes (ClothesStyle::kEveryday): collars, bands and stitches at their ends, a jacket that is
+/// open over a shirt, buttons, knit, waistbands, side seams, worn denim, soles. The seed determines which of them a
+/// person has.
+class ClothesDetails {
+ public:
+  ClothesDetails(const Outfit& outfit, uint64_t seed);
+
+  /// `colour` (red, green, blue, 0…255) of the cloth, modified by the details at this point of the template; unchanged
+  /// for labels other than top, bottom and shoes.
+  [[nodiscard]] Eigen::Vector3f On(PersonLabel label, const Eigen::Vector3f& on_template,
+                                   const Eigen::Vector3f& colour) const;
+
+ private:
+  [[nodiscard]] Eigen::Vector3f OnTop(const Eigen::Vector3d& p, const Eigen::Vector3f& colour) const;
+  [[nodiscard]] Eigen::Vector3f OnBottom(const Eigen::Vector3d& p, const Eigen::Vector3f& colour) const;
+
+  Outfit outfit_;
+  // Lengths in metres; 0: this person has none.
+  double collar_m_ = 0, cuff_m_ = 0, hem_band_m_ = 0;  ///< widths of bands in other colours
+  double stitches_m_ = 0;                              ///< distance of a line of stitches from the cloth's end
+  double open_m_ = 0;                                  ///< half the opening of a jacket at the neck
+  bool buttons_ = false;                               ///< down the front
+  double knit_m_ = 0;                                  ///< distance of the rows of knit
+  double waistband_m_ = 0, sole_m_ = 0;
+  bool side_seams_ = false;
+  float worn_ = 0;  ///< lightening of the thighs' front
+  Eigen::Vector3f trim_, inner_, belt_, sole_;
+};
 
 enum class PatternKind : uint8_t { kPlain, kStripes, kChecks, kDots, kNoise, kPrint };
 

@@ -16,7 +16,7 @@
 #include "pipelines/animate/animation_limits.h"
 #include "pipelines/body_of_track.h"
 #include "pipelines/files.h"
-#include "pipelines/neural/person/scores_json.h"
+#include "pipelines/neural/person/person_renderer.h"
 #include "pipelines/neural/weights_folder.h"
 #include "pipelines/report_json.h"
 

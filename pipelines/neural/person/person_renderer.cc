@@ -2,6 +2,8 @@
 #include "pipelines/neural/person/person_renderer.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -9,14 +11,46 @@
 #include "neural/guided/guided_renderer.h"
 #include "neural/photo/photo_renderer.h"
 #include "neural/training/training_run.h"
-#include "pipelines/neural/guided/guided_preview.h"
 #include "pipelines/neural/guided/virtual_views.h"
 #include "pipelines/runs/run_config.h"
 #include "render/texture/complete/partial_texture.h"
 #include "render/texture/planar_image.h"
+#include "render/view/contact_sheet.h"
 
 namespace bodyloom {
 namespace {
+
+constexpr std::array<Colour, 6> kViewColours = {
+    {{230, 60, 60}, {60, 160, 230}, {80, 200, 90}, {240, 180, 40}, {180, 80, 220}, {60, 210, 200}}};
+
+Image OriginImage(const CoherentMaps& maps, int num_photos) {
+  Image image(maps.size, maps.size);
+  for (size_t i = 0; i < maps.from.size(); ++i) {
+    const int number = maps.from[i] - 1;
+    if (number < 0) continue;
+    const int grey = std::max(90, 230 - 45 * number);
+    const Colour colour = number < num_photos ? Colour{uint8_t(grey), uint8_t(grey), uint8_t(grey)}
+                                              : kViewColours[(number - num_photos) % kViewColours.size()];
+    image.bgr[3 * i] = colour.blue;
+    image.bgr[3 * i + 1] = colour.green;
+    image.bgr[3 * i + 2] = colour.red;
+  }
+  return image;
+}
+
+/// Pictures for visual inspection of the pose-guided renderer.
+/// Appearance, labels and sources of the texels (photos in greys, synthesised ones in colours, empty black); below, the
+/// images of the virtual views, then their labels.
+Image GuidedMapsSheet(const CoherentMaps& maps, std::span<const RenderedPerson> virtual_images, int num_photos) {
+  std::vector<Image> images = {ImageFromPlanes(maps.appearance, maps.size, maps.size),
+                               LabelsImage(maps.labels, maps.size, maps.size), OriginImage(maps, num_photos)};
+  for (const RenderedPerson& p : virtual_images) images.push_back(ImageFromPlanes(p.image, p.size, p.size));
+  for (const RenderedPerson& p : virtual_images) images.push_back(LabelsImage(p.labels, p.size, p.size));
+  ContactSheetOptions options;
+  options.columns = 3;
+  options.cell_height_px = maps.size;
+  return ContactSheet(images, options);
+}
 
 class OnePhotoPerson : public PersonRenderer {
  public:
@@ -132,6 +166,19 @@ std::vector<uint8_t> TexelsOf(std::span<const int> parts, std::span<const uint8_
   std::vector<uint8_t> texels(texel_parts.begin(), texel_parts.end());
   for (uint8_t& part : texels) part = std::find(parts.begin(), parts.end(), int{part}) != parts.end() ? 1 : 0;
   return texels;
+}
+
+nlohmann::ordered_json ToJson(const PersonScores& s) {
+  nlohmann::ordered_json json = {
+      {"frames", s.frames}, {"image_l1", s.image_l1}, {"psnr_db", s.psnr_db}, {"silhouette_iou", s.silhouette_iou}};
+  if (!std::isnan(s.label_iou)) json["label_iou"] = s.label_iou;
+  json[LpipsName("lpips", s.lpips_random_features)] = s.lpips;
+  json[LpipsName("lpips_deviation", s.lpips_random_features)] = s.lpips_deviation;
+  if (!std::isnan(s.contextual)) {
+    json[s.contextual_random_features ? "contextual_quarter_random_features" : "contextual_vgg19"] = s.contextual;
+  }
+  json[LpipsName("lpips_of_people", s.lpips_random_features)] = s.lpips_of_people;
+  return json;
 }
 
 }  // namespace bodyloom

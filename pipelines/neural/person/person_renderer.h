@@ -16,6 +16,7 @@
 #include "neural/base/rendered_person.h"
 #include "neural/guided/coherent_maps.h"
 #include "neural/guided/guided_config.h"
+#include "neural/metrics/person_scores.h"
 #include "render/image/image.h"
 #include "render/texture/complete/texel_neighbours.h"
 #include "render/texture/photo_frame.h"
@@ -92,5 +93,9 @@ std::unique_ptr<PersonRenderer> OpenPersonRenderer(const PersonRendererRequest& 
 
 /// Mask of U × U texels: 1 where the texel belongs to one of the parts.
 std::vector<uint8_t> TexelsOf(std::span<const int> parts, std::span<const uint8_t> texel_parts);
+
+/// JSON of the scores of people rendered from photos.
+/// One object, without SSIM; feature-based scores are named after the network that computed them.
+nlohmann::ordered_json ToJson(const PersonScores& scores);
 
 }  // namespace bodyloom

@@ -12,7 +12,7 @@
 #include "neural/guided/choose_photos.h"
 #include "pipelines/files.h"
 #include "pipelines/neural/animation.h"
-#include "pipelines/neural/person/scores_json.h"
+#include "pipelines/neural/person/person_renderer.h"
 #include "pipelines/neural/score/scored_renderer.h"
 #include "pipelines/neural/weights_folder.h"
 #include "pipelines/report_json.h"

@@ -5,7 +5,7 @@
 /// (render/gaussian_avatar/learning/image_loss.h), backpropagates, adds the regularisation (GaussianCost), and updates
 /// visible Gaussians and the light by Adam (adam.h). Scales are clamped to their limits, quaternions and normals
 /// normalised. Every `relocate_every` steps, up to relocate_until of the training, dead Gaussians are relocated to
-/// where derivatives on the screen are large (relocate_gaussians.h).
+/// where derivatives on the screen are large (RelocateGaussians()).
 ///
 /// Gaussians hidden in a frame are not updated by its loss: Adam would turn tiny derivatives, transmitted through
 /// surfaces in front, into full steps and fill unseen sides with noise. Hidden Gaussians of skin and cloth stay; hidden
@@ -37,10 +37,24 @@
 #include "render/gaussian_avatar/learning/adam.h"
 #include "render/gaussian_avatar/learning/early_stopping.h"
 #include "render/gaussian_avatar/learning/pose_refiner.h"
-#include "render/gaussian_avatar/learning/relocate_gaussians.h"
 #include "render/gaussian_avatar/learning/training_view.h"
 
 namespace bodyloom {
+
+// Relocates invisible Gaussians to where the image is wrong. Their number, and hence the rendering time, stays.
+//
+// A Gaussian with opacity below `dead_opacity` becomes a copy of another, sampled with probability proportional to
+// `pull`, at a position sampled from that one's distribution. Original and copy get the opacity 1 − sqrt(1 − o), so
+// that together they have the former opacity, and 0.8 times the size.
+
+struct RelocateOptions {
+  float dead_opacity = 0.015F;
+  uint64_t seed = 1;
+};
+
+/// Returns the relocated rows, ascending; none without pull (all 0, or not finite). `pull`: by row; negative values and
+/// those not finite count as 0. Deterministic. Throws std::invalid_argument unless there is one pull per row.
+std::vector<int> RelocateGaussians(std::span<const float> pull, const RelocateOptions& options, GaussianBody* body);
 
 // Regularisation that removes Gaussians which no image needs:
 //   cost = (Σ_i (by_opacity + by_distance (1 − φ_i)) o_i + by_scale Σ_i Σ_k e^(s_ik)) / N,   scales in metres

@@ -13,7 +13,6 @@
 #include "geometry/base/percentile.h"
 #include "geometry/uv_maps/uv_charts.h"
 #include "render/image/palette.h"
-#include "render/texture/complete/rest_views.h"
 #include "render/texture/complete/texel_counterparts.h"
 #include "render/texture/complete/uv_fill.h"
 #include "render/texture/uv_sample.h"

@@ -11,7 +11,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
-#include "data_tools/avatar/gaussian_ply.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
 #include "tests/data_tools/formats/expect_file_error.h"

@@ -13,7 +13,7 @@
 #include <tuple>
 
 #include "data_tools/estimates/estimate_arrays.h"
-#include "data_tools/estimates/gem_reader.h"
+#include "data_tools/estimates/estimate_readers.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/formats/npz.h"
 #include "data_tools/observations/keypoint_conventions.h"

@@ -9,7 +9,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "data_tools/export/c3d_writer.h"
 #include "data_tools/export/camera_writers.h"
 #include "data_tools/export/markers.h"
 #include "data_tools/formats/atomic_file.h"

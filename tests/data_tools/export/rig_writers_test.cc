@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/export/rig_writers.h"
+#include "data_tools/export/camera_writers.h"
 
 #include <gmock/gmock.h>
 

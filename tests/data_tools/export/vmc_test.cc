@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "data_tools/export/export_scene.h"
-#include "data_tools/export/vmc_bones.h"
 #include "data_tools/export/vmc_sender.h"
 #include "geometry/math/rotation.h"
 #include "tests/data_tools/export/osc_twin.h"

@@ -11,11 +11,8 @@
 #include <vector>
 
 #include "data_tools/formats/atomic_file.h"
-#include "data_tools/motion/amp_reader.h"
-#include "data_tools/motion/asf_amc_reader.h"
-#include "data_tools/motion/bvh_reader.h"
-#include "data_tools/motion/deepmimic_reader.h"
 #include "data_tools/motion/load_motion.h"
+#include "data_tools/motion/motion_readers.h"
 #include "data_tools/motion/text_scanner.h"
 #include "geometry/math/rotation.h"
 #include "tests/data_tools/formats/expect_file_error.h"

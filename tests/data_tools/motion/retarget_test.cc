@@ -11,9 +11,8 @@
 #include <filesystem>
 #include <random>
 
-#include "data_tools/motion/bvh_reader.h"
 #include "data_tools/motion/load_motion.h"
-#include "data_tools/motion/skeleton_map.h"
+#include "data_tools/motion/motion_readers.h"
 #include "data_tools/motion/smpl_rest.h"
 #include "geometry/body/body_model.h"
 #include "geometry/math/rotation.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/observations/landmark_names.h"
+#include "data_tools/observations/keypoint_conventions.h"
 
 #include <gtest/gtest.h>
 

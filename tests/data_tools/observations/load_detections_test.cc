@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "data_tools/formats/atomic_file.h"
-#include "data_tools/observations/aist_reader.h"
+#include "data_tools/observations/detection_readers.h"
 #include "data_tools/observations/keypoint_conventions.h"
 #include "data_tools/observations/observations_npz.h"
 #include "tests/data_tools/formats/expect_file_error.h"

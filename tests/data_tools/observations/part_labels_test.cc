@@ -9,7 +9,6 @@
 
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/evaluation/part_label_evaluation.h"
-#include "data_tools/observations/mask_runs.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/body/posed_body.h"

@@ -12,7 +12,6 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
-#include "data_tools/video/video_frame_times.h"
 #include "data_tools/video/video_reader.h"
 #include "data_tools/video/video_writer.h"
 #include "tests/data_tools/formats/expect_file_error.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "data_tools/formats/atomic_file.h"
-#include "data_tools/video/video_frame_times.h"
 #include "data_tools/video/video_reader.h"
 #include "tests/data_tools/formats/temporary_file.h"
 #include "tests/data_tools/video/clip_maker.h"

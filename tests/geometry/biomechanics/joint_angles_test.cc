@@ -10,7 +10,6 @@
 
 #include "geometry/base/hash_random.h"
 #include "geometry/base/units.h"
-#include "geometry/biomechanics/cardan_angles.h"
 #include "geometry/biomechanics/landmark_angles.h"
 #include "geometry/math/rotation.h"
 #include "tests/support/toy_body.h"

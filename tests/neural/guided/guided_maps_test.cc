@@ -9,7 +9,6 @@
 #include "neural/guided/choose_photos.h"
 #include "neural/guided/complete_maps.h"
 #include "neural/guided/guided_batches.h"
-#include "neural/metrics/contextual_similarity.h"
 #include "neural/metrics/lpips.h"
 #include "neural/metrics/person_scores.h"
 #include "render/texture/complete/body_part_map.h"

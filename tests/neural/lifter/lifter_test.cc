@@ -9,7 +9,6 @@
 #include <random>
 #include <sstream>
 
-#include "neural/lifter/lifter_loss.h"
 #include "neural/lifter/lifter_module.h"
 #include "neural/lifter/train_lifter.h"
 #include "tracking/lifter/lifter_network.h"

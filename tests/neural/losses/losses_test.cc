@@ -7,8 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "neural/losses/contextual_loss.h"
-#include "neural/losses/gan_losses.h"
 #include "neural/losses/image_losses.h"
 #include "tests/support/gradient_check.h"
 

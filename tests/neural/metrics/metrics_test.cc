@@ -8,11 +8,10 @@
 #include <random>
 
 #include "neural/base/image_tensor.h"
-#include "neural/losses/contextual_loss.h"
-#include "neural/metrics/contextual_similarity.h"
+#include "neural/losses/image_losses.h"
 #include "neural/metrics/lpips.h"
+#include "neural/metrics/person_scores.h"
 #include "neural/metrics/pixel_metrics.h"
-#include "neural/metrics/temporal_lpips.h"
 #include "neural/networks/vgg.h"
 #include "tests/neural/metrics/named_features.h"
 

@@ -10,7 +10,7 @@
 #include "neural/motion/motion_renderer.h"
 #include "neural/motion/roll_out.h"
 #include "neural/networks/aligned_box.h"
-#include "neural/training/checkpoint_file.h"
+#include "neural/training/checkpoint.h"
 #include "tests/neural/motion/toy_motion.h"
 
 namespace bodyloom::person_box_test {

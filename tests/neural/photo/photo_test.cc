@@ -13,7 +13,6 @@
 #include "neural/metrics/person_scores.h"
 #include "neural/networks/architecture_card.h"
 #include "neural/photo/photo_batch.h"
-#include "neural/photo/photo_losses.h"
 #include "neural/photo/photo_model.h"
 #include "tests/neural/photo/toy_photos.h"
 #include "tests/support/gradient_check.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 #include <unistd.h>
+#include <stdexcept>
 
 #include <cmath>
 #include <filesystem>
@@ -302,5 +303,117 @@ TEST_F(Checkpoints, NamesAndOptimizersAreChecked) {
   EXPECT_THROW(checkpoint.Add("sgd", &sgd), std::invalid_argument);
 }
 
+TEST(Muon, OrthogonalFactorsHaveSingularValuesNearOne) {
+  torch::manual_seed(3);
+  for (const auto& [m, n] : {std::pair<int, int>{24, 24}, {24, 72}, {72, 24}, {1, 8}}) {
+    // Singular values from 1 down to 0.02.
+    const int rank = std::min(m, n);
+    Tensor u = std::get<0>(torch::linalg_qr(torch::randn({m, rank}, torch::kDouble)));
+    Tensor v = std::get<0>(torch::linalg_qr(torch::randn({n, rank}, torch::kDouble)));
+    const Tensor s = torch::logspace(0, -1.7, rank, 10, torch::kDouble);
+    const Tensor matrix = torch::matmul(u * s, v.t());
+    const Tensor result = ApproximateOrthogonalFactor(matrix);
+    ASSERT_EQ(result.sizes(), matrix.sizes());
+    const Tensor values = torch::linalg_svdvals(result);
+    EXPECT_GT(values.min().item<double>(), 0.3) << m << "x" << n;
+    EXPECT_LT(values.max().item<double>(), 1.3) << m << "x" << n;
+    // The same singular vectors: Uᵀ X V is diagonal.
+    const Tensor core = torch::matmul(torch::matmul(u.t(), result), v);
+    EXPECT_LT((core - torch::diag(torch::diag(core))).abs().max().item<double>(), 1e-9) << m << "x" << n;
+  }
+  EXPECT_EQ(ApproximateOrthogonalFactor(torch::zeros({4, 6})).abs().max().item<float>(), 0);
+}
+
+TEST(Muon, StepsAsItsFormulaSays) {
+  torch::manual_seed(4);
+  Tensor weight = torch::randn({6, 4, 3}, torch::kDouble).requires_grad_(true);
+  Muon muon({weight}, {.momentum = 0.9, .weight_decay = 0.1});
+  Tensor expected = weight.detach().clone(), momentum = torch::zeros_like(expected);
+  for (int step = 0; step < 3; ++step) {
+    const Tensor gradient = torch::randn({6, 4, 3}, torch::kDouble);
+    weight.mutable_grad() = gradient.clone();
+    muon.Step(0.01);
+    momentum = 0.9 * momentum + gradient;
+    const Tensor turn = ApproximateOrthogonalFactor((gradient + 0.9 * momentum).reshape({6, 12})).reshape({6, 4, 3});
+    expected = (1 - 0.01 * 0.1) * expected - 0.01 * 0.2 * std::sqrt(12.0) * turn;
+    EXPECT_LT((weight.detach() - expected).abs().max().item<double>(), 1e-12) << step;
+  }
+}
+
+TEST(Muon, GoesOnFromWhatItSaved) {
+  torch::manual_seed(5);
+  const Tensor start = torch::randn({4, 5});
+  const auto step = [](Muon* muon, Tensor* weight, int seed) {
+    torch::manual_seed(seed);
+    weight->mutable_grad() = torch::randn({4, 5});
+    muon->Step(0.02);
+  };
+  Tensor a = start.clone().requires_grad_(true), b = start.clone().requires_grad_(true);
+  Muon whole({a}, {}), first({b}, {}), second({b}, {});
+  step(&whole, &a, 1);
+  step(&whole, &a, 2);
+  step(&first, &b, 1);
+  for (size_t i = 0; i < first.momenta().size(); ++i) second.momenta()[i] = first.momenta()[i].clone();
+  step(&second, &b, 2);
+  EXPECT_TRUE(torch::equal(a, b));
+}
+
+TEST(Muon, RefusesVectors) { EXPECT_THROW(Muon({torch::zeros({4})}, {}), std::invalid_argument); }
+
+void SetAll(torch::nn::Module* module, double value) {
+  const torch::NoGradGuard no_grad;
+  for (torch::Tensor& parameter : module->parameters()) parameter.fill_(value);
+}
+
+double First(const torch::nn::Module& module) { return module.parameters()[0].flatten()[0].item<double>(); }
+
+// Averages of weights against the sums that define them.
+
+TEST(WeightAverage, IsTheSumWeightedByAPowerOfTheStep) {
+  // A share of a quarter is γ = 2, for which the recurrence has the weights t (t + 1).
+  torch::nn::Linear learner(2, 2), average(2, 2);
+  learner->to(torch::kDouble);
+  average->to(torch::kDouble);
+  double sum = 0, weights = 0;
+  for (int t = 1; t <= 400; ++t) {
+    const double value = std::sin(0.3 * t) + 0.01 * t;
+    sum += t * (t + 1.0) * value;
+    weights += t * (t + 1.0);
+    SetAll(learner.get(), value);
+    AverageWeights(*learner, t, 0.25, average.get());
+    ASSERT_NEAR(First(*average), sum / weights, 1e-12) << t;
+  }
+}
+
+TEST(WeightAverage, IsAsOldAsItsShareSays) {
+  for (const double share : {0.05, 0.1, 0.5}) {
+    torch::nn::Linear learner(1, 1), average(1, 1);
+    learner->to(torch::kDouble);
+    average->to(torch::kDouble);
+    constexpr int kSteps = 20000;
+    for (int t = 1; t <= kSteps; ++t) {
+      SetAll(learner.get(), t);
+      AverageWeights(*learner, t, share, average.get());
+    }
+    EXPECT_NEAR((kSteps - First(*average)) / kSteps, share, 1e-3);
+  }
+}
+
+TEST(WeightAverage, CopiesBuffers) {
+  torch::nn::BatchNorm1d learner(3), average(3);
+  learner->running_mean.fill_(7);
+  AverageWeights(*learner, 5, 0.1, average.get());
+  EXPECT_EQ(average->running_mean[0].item<float>(), 7);
+}
+
+TEST(WeightAverage, RefusesWhatDoesNotFit) {
+  torch::nn::Linear learner(2, 2), same(2, 2), wider(2, 3);
+  EXPECT_THROW(AverageWeights(*learner, 1, 0.1, wider.get()), std::invalid_argument);
+  EXPECT_THROW(AverageWeights(*learner, 0, 0.1, same.get()), std::invalid_argument);
+  EXPECT_THROW(AverageWeights(*learner, 1, 0, same.get()), std::invalid_argument);
+  EXPECT_THROW(AverageWeights(*learner, 1, 0.6, same.get()), std::invalid_argument);
+}
+
 }  // namespace
+
 }  // namespace bodyloom::training_test

@@ -9,7 +9,6 @@
 
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
-#include "data_tools/video/photo_file.h"
 #include "data_tools/video/video_writer.h"
 #include "pipelines/animate/person_segmentation.h"
 #include "pipelines/animate/read_photos.h"

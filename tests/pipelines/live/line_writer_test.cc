@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipelines/live/line_writer.h"
+#include "pipelines/live/live_outputs.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

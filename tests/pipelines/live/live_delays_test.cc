@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipelines/live/live_delays.h"
+#include "pipelines/live/live_state.h"
 
 #include <gtest/gtest.h>
 

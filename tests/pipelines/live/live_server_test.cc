@@ -14,7 +14,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "pipelines/live/live_page.h"
 #include "tests/pipelines/live/live_states.h"
 
 namespace bodyloom::live_server_test {

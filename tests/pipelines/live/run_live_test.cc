@@ -11,7 +11,7 @@
 
 #include "data_tools/body/body_io.h"
 #include "data_tools/export/export_scene.h"
-#include "data_tools/export/vmc_bones.h"
+#include "data_tools/export/vmc_sender.h"
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/learned/lifter_weights_io.h"
 #include "data_tools/learned/pose_prior_io.h"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Fits to masks of garments with finer, heavier and stiffer cloth than the fit's, at widths and lengths between those
 /// it tries.
-#include "render/garment/fit_clothes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <vector>
+
+#include "render/garment/fit_clothes.h"
 
 #include "geometry/body/normals.h"
 #include "render/view/overlay.h"
@@ -85,5 +85,12 @@ TEST_F(FitClothesTest, ASkirtDoesNotMakeThighsWide) {
   EXPECT_GT(count, 500);
 }
 
+TEST(GarmentSwing, TurnsUpInTheImageOnly) {
+  const Track photo = StandingPhoto(0);
+  EXPECT_LT((SwungUp(photo, 0) - Eigen::Vector3d(0, -1, 0)).norm(), 1e-12);
+  EXPECT_LT((SwungUp(photo, EIGEN_PI / 2) - Eigen::Vector3d(1, 0, 0)).norm(), 1e-12);
+}
+
 }  // namespace
+
 }  // namespace bodyloom::fit_clothes_test

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A bare body of two colours, photographed by the renderer itself: the person made from the photos must equal that
 /// body.
-#include "render/photo_avatar/photo_person_builder.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,10 +12,15 @@
 #include <stdexcept>
 #include <vector>
 
+#include "render/photo_avatar/photo_person_builder.h"
+
 #include "data_tools/body/builtin_body.h"
+#include "data_tools/datasets/single_person_dataset.h"
+#include "geometry/body/posed_body.h"
 #include "geometry/scene/observations.h"
 #include "geometry/scene/track_edits.h"
 #include "render/photo_avatar/draw_person.h"
+#include "render/photo_avatar/photo_person.h"
 #include "render/view/overlay.h"
 #include "tests/support/short_track.h"
 
@@ -136,5 +139,193 @@ TEST(PhotoPersonBuilder, RefusesWhatShowsTooLittle) {
   EXPECT_THROW(PhotoPersonBuilder(BodyOrBuiltin(""), 64).Finish(), std::invalid_argument);
 }
 
+constexpr int kWidth = 40, kHeight = 30;
+constexpr int kTorso = 2, kForearm = 19, kHead = 23;
+constexpr Colour kSkinColour{200, 160, 140}, kShirt{30, 40, 160};
+
+/// A trunk from column 0 to 29, a face in the first rows; the fitted forearm is columns 30 to 34.
+struct Scene {
+  Scene() : image(kWidth, kHeight, kShirt) {
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const bool arm = x >= 30 && x < 35, face = y < 6;
+        parts.push_back(face ? kHead : (arm ? kForearm : (x < 30 ? kTorso : 0)));
+        labels.push_back(
+            static_cast<uint8_t>(face ? PersonLabel::kFace : (arm ? PersonLabel::kSkin : PersonLabel::kTop)));
+        if (face || arm) Paint(x, y, kSkinColour);
+      }
+    }
+    mask.assign(parts.size(), 1);
+  }
+  void Paint(int x, int y, const Colour& colour) {
+    uint8_t* p = image.pixel(x, y);
+    p[0] = colour.blue, p[1] = colour.green, p[2] = colour.red;
+  }
+  [[nodiscard]] std::vector<uint8_t> Kept(int reach_px) const {
+    return WithoutLimbLeaks(image, mask, labels, parts, reach_px);
+  }
+  static size_t At(int x, int y) { return static_cast<size_t>(y) * kWidth + x; }
+  Image image;
+  std::vector<uint8_t> mask, labels, parts;
+};
+
+TEST(LimbLeaks, NothingLeaksWhereTheShirtIsSeen) {
+  const Scene scene;
+  EXPECT_EQ(scene.Kept(8), scene.mask);
+}
+
+TEST(LimbLeaks, SkinBesideTheFittedArmIsTheArms) {
+  Scene scene;
+  scene.labels[Scene::At(27, 15)] = static_cast<uint8_t>(PersonLabel::kSkin);  // by its label
+  scene.Paint(25, 20, {190, 150, 135});  // by its colour, though it is called a shirt
+  scene.labels[Scene::At(10, 15)] = static_cast<uint8_t>(PersonLabel::kSkin);  // far away: a hole, or bare
+  const std::vector<uint8_t> kept = scene.Kept(8);
+  EXPECT_EQ(kept[Scene::At(27, 15)], 0);
+  EXPECT_EQ(kept[Scene::At(25, 20)], 0);
+  EXPECT_EQ(kept[Scene::At(10, 15)], 1);
+  EXPECT_EQ(kept[Scene::At(32, 15)], 1) << "the arm itself";
+  EXPECT_EQ(kept[Scene::At(29, 3)], 1) << "the face";
+  size_t gone = 0;
+  for (const uint8_t k : kept) gone += k == 0 ? 1 : 0;
+  EXPECT_EQ(gone, 2U);
+  EXPECT_EQ(scene.Kept(4)[Scene::At(25, 20)], 1) << "out of reach";
+}
+
+TEST(LimbLeaks, ABareChestIsKeptByItsColour) {
+  Scene scene;
+  for (int y = 6; y < kHeight; ++y) {
+    for (int x = 0; x < 30; ++x) scene.Paint(x, y, {198, 158, 142});
+  }
+  EXPECT_EQ(scene.Kept(8), scene.mask) << "trunk and arm are of one colour";
+}
+
+TEST(LimbLeaks, WithoutAFaceLabelsDecide) {
+  Scene scene;
+  for (size_t i = 0; i < scene.labels.size(); ++i) {
+    if (scene.parts[i] == kHead) scene.labels[i] = static_cast<uint8_t>(PersonLabel::kHair);
+  }
+  scene.Paint(25, 20, kSkinColour);
+  EXPECT_EQ(scene.Kept(8), scene.mask);
+  scene.labels[Scene::At(25, 20)] = static_cast<uint8_t>(PersonLabel::kSkin);
+  EXPECT_EQ(scene.Kept(8)[Scene::At(25, 20)], 0);
+}
+
+TEST(LimbLeaks, RefusesOtherSizes) {
+  Scene scene;
+  scene.parts.pop_back();
+  EXPECT_THROW(scene.Kept(8), std::invalid_argument);
+}
+
+using Eigen::Vector3d;
+
+constexpr int kLitSide = 240;
+
+/// Bright above, dark below.
+struct LitPhoto {
+  explicit LitPhoto(const ShLighting& light) : surface(BuiltinBody(), false, 2), image(kLitSide, kLitSide) {
+    const BodyModel& body = BuiltinBody();
+    Eigen::VectorXd pose = Eigen::VectorXd::Zero(3 * body.num_joints());
+    pose[0] = M_PI;
+    surface.Look(PoseVertices(body, {}, PoseFromAxisAngle(body, pose, {0, 0, 3})),
+                 MakePinhole(kLitSide, kLitSide, 1.3 * kLitSide));
+    std::vector<uint8_t> coverage;
+    double sum = 0;
+    int pixels = 0;
+    for (int y = 0; y < kLitSide; ++y) {
+      for (int x = 0; x < kLitSide; ++x) {
+        const float* n = surface.NormalAt(x, y);
+        coverage.push_back(n == nullptr ? 0 : 255);
+        const bool below = y > kLitSide / 2;
+        labels.push_back(static_cast<uint8_t>(n == nullptr ? PersonLabel::kBackground
+                                                           : (below ? PersonLabel::kBottom : PersonLabel::kTop)));
+        if (n == nullptr) continue;
+        for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = below ? 60 : 150;
+        sum += Shading(light, Vector3d(n[0], n[1], n[2]))[0];
+        ++pixels;
+      }
+    }
+    mean = sum / pixels;
+    even = image;
+    surface.Light(light, {}, coverage, &image);
+  }
+  LitSurface surface;
+  Image image, even;
+  std::vector<uint8_t> labels;
+  double mean = 0;  ///< of the light's shading over the person
+};
+
+ShLighting FromTheLeft() {
+  return AmbientLight(Vector3d::Constant(0.5)) + DirectionalLight({-0.8, -0.3, -0.5}, Vector3d::Constant(0.6));
+}
+
+// A body in known light, photographed by the renderer itself.
+
+TEST(LightOfPhoto, IsTheLightThatWasThere) {
+  const LitPhoto photo(FromTheLeft());
+  const PhotoLight found = LightOfPhoto(photo.image, photo.labels, photo.surface);
+  ASSERT_TRUE(found.fit.IsUsable());
+  double worst = 0, minimum = 10, maximum = 0;
+  for (int y = 0; y < kLitSide; ++y) {
+    for (int x = 0; x < kLitSide; ++x) {
+      const float* n = photo.surface.NormalAt(x, y);
+      if (n == nullptr) continue;
+      const Vector3d normal(n[0], n[1], n[2]);
+      const double truth = Shading(FromTheLeft(), normal)[0] / photo.mean;
+      worst = std::max(worst, std::abs(found.coefficients.dot(ShBasis(normal)) - truth));
+      minimum = std::min(minimum, truth), maximum = std::max(maximum, truth);
+    }
+  }
+  EXPECT_GT(maximum - minimum, 0.6) << "or there is nothing to find";
+  EXPECT_LT(worst, (maximum - minimum) / 4) << "what the ridge holds at even light";
+}
+
+TEST(LightOfPhoto, TakenAwayLeavesEvenLight) {
+  LitPhoto photo(FromTheLeft());
+  const auto error = [&] {
+    double sum = 0;
+    int pixels = 0;
+    for (size_t i = 0; i < photo.labels.size(); ++i) {
+      if (photo.labels[i] == 0) continue;
+      // The light's brightness cannot be told: colours relative to the mean one of their label.
+      const double expected =
+          255 * EncodePixel(photo.mean * DecodePixel(photo.even.bgr[3 * i] / 255.0, PixelEncoding::kSrgb),
+                            PixelEncoding::kSrgb);
+      sum += std::abs(photo.image.bgr[3 * i] - expected);
+      ++pixels;
+    }
+    return sum / pixels;
+  };
+  const double before = error();
+  const PhotoLight found = LightOfPhoto(photo.image, photo.labels, photo.surface);
+  photo.surface.Unlight(GreyLight(found.coefficients), kPhotoShading, &photo.image);
+  EXPECT_LT(error(), before / 4) << before;
+}
+
+TEST(LightOfPhoto, DarkTrousersAreNoShade) {
+  const LitPhoto photo(AmbientLight(Vector3d::Constant(1)));
+  const PhotoLight found = LightOfPhoto(photo.image, photo.labels, photo.surface);
+  for (int y = 0; y < kLitSide; y += 3) {
+    for (int x = 0; x < kLitSide; x += 3) {
+      const float* n = photo.surface.NormalAt(x, y);
+      if (n == nullptr) continue;
+      EXPECT_NEAR(found.coefficients.dot(ShBasis({n[0], n[1], n[2]})), 1, 0.02);
+    }
+  }
+}
+
+TEST(LightOfPhoto, IsEvenWhereItCannotBeFound) {
+  LitPhoto photo(FromTheLeft());
+  std::vector<uint8_t> nobody(photo.labels.size(), 0);
+  const PhotoLight none = LightOfPhoto(photo.image, nobody, photo.surface);
+  EXPECT_FALSE(none.fit.IsUsable());
+  EXPECT_EQ(none.coefficients, EvenLight());
+  const PhotoLight dark = LightOfPhoto(Image(kLitSide, kLitSide), photo.labels, photo.surface);
+  EXPECT_FALSE(dark.fit.IsUsable());
+  EXPECT_EQ(dark.coefficients, EvenLight());
+  nobody.pop_back();
+  EXPECT_THROW(LightOfPhoto(photo.image, nobody, photo.surface), std::invalid_argument);
+}
+
 }  // namespace
+
 }  // namespace bodyloom::photo_person_builder_test

@@ -240,7 +240,7 @@ LiftedFrame FrameThatErrs(double across, double along, const Eigen::Matrix3d& R)
   return frame;
 }
 
-// Of the density of lifter_loss.h, r² ~ Gamma(3) in units of the scales, one coordinate has the variance E r²/3 = 4:
+// Of the density of lifter_module.h, r² ~ Gamma(3) in units of the scales, one coordinate has the variance E r²/3 = 4:
 // drawn.
 TEST(Uncertainty, CovarianceOfTheLiftersDensity) {
   const LiftedLandmarks landmarks = CompileLiftedLandmarks(BuiltinBody(), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/synthesis/clips/synth_camera_path.h"
+#include "data_tools/synthesis/clips/synth_camera.h"
 
 #include <gtest/gtest.h>
 

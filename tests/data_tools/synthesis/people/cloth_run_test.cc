@@ -12,7 +12,7 @@
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/motion/load_motion.h"
 #include "data_tools/motion/motion_tools.h"
-#include "data_tools/synthesis/people/dressed_person.h"
+#include "data_tools/synthesis/people/dressed_render.h"
 #include "data_tools/synthesis/people/make_single_person_dataset.h"
 #include "geometry/body/normals.h"
 #include "geometry/cloth/cloth_simulation.h"

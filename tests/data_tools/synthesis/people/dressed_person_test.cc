@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data_tools/synthesis/people/dressed_person.h"
+#include "data_tools/synthesis/people/dressed_render.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/formats/atomic_file.h"
-#include "data_tools/synthesis/people/dressed_render.h"
 #include "data_tools/synthesis/people/make_single_person_dataset.h"
 #include "geometry/cloth/cloth_run.h"
 #include "geometry/math/rotation.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Symmetry of the body at rest: counterparts, and the nearest known point around a limb.
-#include "render/texture/complete/rest_views.h"
+#include "render/texture/complete/texel_counterparts.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 
 #include "geometry/base/percentile.h"
 #include "render/texture/body_regions.h"
-#include "render/texture/complete/texel_counterparts.h"
 #include "tests/render/garment/person_scene.h"
 
 namespace bodyloom::rest_views_test {
