@@ -19,8 +19,9 @@
 /// the cost at s = 0 and its σ is small enough; frames within 0.3 s count as one measurement. Of two results that with
 /// the smaller σ/s is returned, the first one where its σ/s is below 0.05.
 ///
-/// Feet roll, and those of recorded motions slide: their mean velocity over a clip has σ 5 cm/s (slowest points of
-/// three motions, along the camera's way: 1, 5 and 8 cm/s). It biases s of a camera that keeps its direction:
+/// Feet roll, and those of recorded motions slide: their mean velocity along the camera's way has σ 5 cm/s (three
+/// motions, cameras that go along and round: 0.5 to 8 cm/s, bodyloom_bench_moving_camera). It biases s of a camera that
+/// keeps its direction:
 ///   σ_log = 0.05 ‖mean c'‖ / (s mean ‖c'‖²)     c': the camera's velocity at scale 1; part of the result's σ
 ///
 /// A camera that goes round somebody who stays in one place has its scale from that place (ScaleByPlace), for clips in
