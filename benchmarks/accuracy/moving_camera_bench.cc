@@ -3,7 +3,8 @@
 ///
 ///   bodyloom_bench_moving_camera [--motions demo,FILE,…] [--frames 180] [--seeds 3]
 ///                                [--cameras still,turning,hand-held,walking,orbit]
-///                                [--background points|furnished|blank|crowd] [--write FOLDER] [--json F]
+///                                [--background points|furnished|blank|crowd] [--hide ankle,toe,heel]
+///                                [--write FOLDER] [--json F]
 ///
 /// The first frames of each motion at 30 a second before a synthetic camera of known focal length
 /// (data_tools/synthesis/clips/synth_camera.h), with a detector's noise, toes and heels included. What the tracker
@@ -17,10 +18,16 @@
 ///               themselves; otherwise followed in the pixels of a rendered room (rendered_room.h), bodies masked,
 ///               whose video --write keeps; the path of a camera that goes somewhere has no length, as for `scale`
 ///   none        nothing: it is taken to stand still
-/// Camera "turning" is the hand-held one without its translations.
+/// Camera "turning" is the hand-held one without its translations. --hide: parts of names of landmarks that nothing
+/// detects.
 /// pa: PA-MPJPE of all joints, mm. w, wa, drift, slide: data_tools/evaluation/world_drift.h. ratio: scale found / true,
-/// 0: the tracker found none. path: distance of the camera from where it was, root mean square after one rigid motion,
-/// in percent of its way.
+/// 0: the tracker found none; ratio_z: its logarithm in σ of the scale. path: distance of the camera from where it was,
+/// root mean square after one rigid motion, in percent of its way.
+/// within 1, 2: share of the found centres' coordinates within one and two σ (CameraMotion::sigma_place) of the truth,
+/// of a path without a length, before anybody is tracked; the first camera and the farthest one's distance from it are
+/// held, as for σ.
+/// roll: mean velocity along the camera's way of the point of the true feet (ankles, toes, heels) that moves least over
+/// a tenth of a second, m/s, weighted by the camera's speed: so fast feet go along with it that should stand.
 /// standing: GroundSummary::standing_speed_mps, of what the tracker itself sees of standing feet.
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -30,6 +37,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "benchmarks/accuracy/bench_arguments.h"
 #include "benchmarks/accuracy/bench_report.h"
@@ -46,6 +55,7 @@
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "data_tools/video/video_writer.h"
 #include "geometry/base/units.h"
+#include "geometry/body/posed_body.h"
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
 #include "tests/tracking/camera_motion/synthetic_background.h"
@@ -77,6 +87,13 @@ Motion MotionNamed(const std::string& name, int frames) {
   if (name == "demo") return DemoMotion(BuiltinBody(), frames, kFps);
   const Motion motion = ResampleMotion(LoadMotion(name), kFps);
   return TakeFrames(motion, 0, std::min(frames, motion.num_frames()));
+}
+
+void Hide(const std::string& part, KeypointSequence* keypoints) {
+  for (size_t k = 0; k < keypoints->names.size(); ++k) {
+    if (keypoints->names[k].find(part) == std::string::npos) continue;
+    for (int t = 0; t < keypoints->num_frames(); ++t) keypoints->at(t, static_cast<int>(k)).confidence = 0;
+  }
 }
 
 Eigen::Matrix3Xd Centres(const std::vector<CameraPose>& path) {
@@ -113,8 +130,10 @@ std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<Cam
   TrackSequenceOptions options;
   options.estimate_uncertainty = false;
   const TrackSequenceResult result = FitClip(input, options);
-  if (!result.summary.IsUsable()) return std::vector<double>(10, kNotMeasured);
+  if (!result.summary.IsUsable()) return std::vector<double>(11, kNotMeasured);
   const WorldDrift drift = MeasureWorldDrift(result.track, clip.truth, BuiltinBody());
+  const CameraPathSummary& metre = result.summary.camera_path;
+  const double ratio = scale_m == 0 ? metre.scale_m / unit_m : kNotMeasured;
   double seconds = 0;
   for (const auto& [stage, stage_seconds] : result.summary.seconds) seconds += stage_seconds;
   return {1e3 * ProcrustesPositionError(result.track.joints, clip.truth.joints).mean,
@@ -122,7 +141,8 @@ std::vector<double> TrackAndMeasure(const SynthClip& clip, const std::vector<Cam
           1e3 * drift.wa_mpjpe_m,
           100 * drift.root_drift,
           drift.foot_slide_mps,
-          scale_m == 0 ? result.summary.camera_path.scale_m / unit_m : kNotMeasured,
+          ratio,
+          ratio > 0 ? std::log(ratio) * metre.scale_m / metre.sigma_m : kNotMeasured,
           PathError(result.track.camera_from_scene, clip.truth.camera_from_scene),
           result.summary.ground.standing_speed_mps,
           result.summary.ground.up_spread_deg,
@@ -174,7 +194,60 @@ struct FoundPath {
   std::vector<CameraPose> poses;
   double unit_m = 0;
   std::vector<Eigen::Vector3d> points = {};
+  double within_1 = kNotMeasured, within_2 = kNotMeasured;  ///< shares of the header
 };
+
+/// Of the header.
+double RollSpeed(const SynthClip& clip) {
+  const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
+  const std::vector<std::string> names = {"left_ankle",    "right_ankle", "left_big_toe",
+                                          "right_big_toe", "left_heel",   "right_heel"};
+  constexpr int kStep = 3;
+  std::vector<MatrixX3d> points;
+  const Motion& motion = clip.truth.motion;
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    const BodyPose pose =
+        PoseFromAxisAngle(BuiltinBody(), motion.poses.row(t).transpose(), motion.trans.row(t).transpose());
+    points.push_back(PoseLandmarks(BuiltinBody(), motion.betas, pose, names));
+  }
+  double along = 0, way = 0;
+  for (size_t t = kStep; t < path.size(); ++t) {
+    const Eigen::Vector3d camera = CentreOf(path[t]) - CentreOf(path[t - kStep]);
+    const MatrixX3d moved = points[t] - points[t - kStep];
+    Eigen::Index slowest = 0;
+    moved.rowwise().squaredNorm().minCoeff(&slowest);
+    along += moved.row(slowest).dot(camera) * kFps / kStep;
+    way += camera.norm();
+  }
+  return way > 0 ? along / way : kNotMeasured;
+}
+
+void MeasureCoverage(const CameraMotion& motion, const std::vector<CameraPose>& truth, FoundPath* found) {
+  std::vector<CameraPose> true_poses;
+  for (const double t : motion.path.timestamps)
+    true_poses.push_back(truth.at(static_cast<size_t>(std::lround(t * kFps))));
+  const Eigen::Matrix3Xd places = Centres(motion.path.poses), true_places = Centres(true_poses);
+  const Eigen::Matrix3Xd from_first = places.colwise() - places.col(0),
+                         true_from_first = true_places.colwise() - true_places.col(0);
+  Eigen::Index farthest = 0;
+  from_first.colwise().squaredNorm().maxCoeff(&farthest);
+  const double metres = true_from_first.col(farthest).norm() / from_first.col(farthest).norm();
+  const Eigen::Matrix3d turned =
+      true_poses[0].camera_from_world_rotation.transpose() * motion.path.poses[0].camera_from_world_rotation;
+  double count = 0, in_1 = 0, in_2 = 0;
+  for (Eigen::Index k = 0; k < places.cols(); ++k) {
+    const double sigma_m = metres * motion.sigma_place[size_t(k)];
+    if (!(sigma_m > 0)) continue;  // the first camera
+    const Eigen::Array3d off = (metres * turned * from_first.col(k) - true_from_first.col(k)).array().abs() / sigma_m;
+    count += 3;
+    in_1 += double((off < 1).count());
+    in_2 += double((off < 2).count());
+  }
+  if (count == 0) return;
+  found->within_1 = in_1 / count;
+  found->within_2 = in_2 / count;
+}
+
 FoundPath FindPath(const SynthClip& clip, const BackgroundTracks& background) {
   const Camera& camera = clip.truth.camera;
   CameraMotionOptions options;
@@ -187,6 +260,7 @@ FoundPath FindPath(const SynthClip& clip, const BackgroundTracks& background) {
   const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
   if (motion.kind == CameraMotionKind::kMoving && !path.empty()) {
     found.unit_m = Eigen::umeyama(Centres(found.poses), Centres(path), true).col(0).head<3>().norm();
+    MeasureCoverage(motion, path, &found);
   }
   return found;
 }
@@ -196,8 +270,9 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   report.title = "A camera that moves, synthetic detections";
   report.command = command;
   report.label_columns = {"motion", "seed"};
-  report.value_columns = {"pa_mpjpe_mm", "w_mpjpe_mm",   "wa_mpjpe_mm", "drift_percent", "slide_mps",
-                          "ratio",       "path_percent", "standing",    "up_spread_deg", "s"};
+  report.value_columns = {"pa_mpjpe_mm", "w_mpjpe_mm", "wa_mpjpe_mm",  "drift_percent", "slide_mps",
+                          "ratio",       "ratio_z",    "path_percent", "standing",      "up_spread_deg",
+                          "s",           "within_1",   "within_2",     "roll_mps"};
   for (const std::string& camera : arguments.List("cameras")) {
     for (const std::string& name : arguments.List("motions")) {
       const Motion motion = MotionNamed(name, arguments.Integer("frames"));
@@ -208,13 +283,18 @@ void Run(const BenchArguments& arguments, const std::string& command) {
         const bool turns = camera == "turning";
         options.camera_path.motion = SynthCameraMotionFromString(turns ? "hand-held" : camera);
         if (turns) options.camera_path.shake_m = 0;
-        const SynthClip clip = MakeSynthClip(BuiltinBody(), motion, options);
+        SynthClip clip = MakeSynthClip(BuiltinBody(), motion, options);
+        for (const std::string& part : arguments.List("hide")) Hide(part, &clip.keypoints);
         const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
+        const double roll_mps = RollSpeed(clip);
         const auto add = [&](const std::string& told, const std::vector<CameraPose>* given, double scale_m,
-                             double unit_m = kUnit, const std::vector<Eigen::Vector3d>* points = nullptr) {
-          report.rows.push_back({camera + ", " + told,
-                                 {name, std::to_string(seed)},
-                                 TrackAndMeasure(clip, given, scale_m, unit_m, points)});
+                             double unit_m = kUnit, const FoundPath* found = nullptr) {
+          std::vector<double> values =
+              TrackAndMeasure(clip, given, scale_m, unit_m, found != nullptr ? &found->points : nullptr);
+          values.push_back(found != nullptr ? found->within_1 : kNotMeasured);
+          values.push_back(found != nullptr ? found->within_2 : kNotMeasured);
+          values.push_back(roll_mps);
+          report.rows.push_back({camera + ", " + told, {name, std::to_string(seed)}, std::move(values)});
           std::fprintf(stderr, "%s %s %d %s\n", camera.c_str(), name.c_str(), seed, told.c_str());
         };
         add("none", nullptr, 1);
@@ -229,7 +309,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
             FindPath(clip, room == "points" ? BackgroundPoints(clip, options.seed)
                                             : RoomPoints(clip, RoomKindFromString(room), options.seed, video));
         add("found", found.poses.empty() ? nullptr : &found.poses, found.unit_m > 0 ? 0 : 1, found.unit_m,
-            found.unit_m > 0 ? &found.points : nullptr);
+            found.unit_m > 0 ? &found : nullptr);
         if (path.empty()) continue;
         add("path", &path, 1);
         const std::vector<CameraPose> unit = ScaledPath(path, 1 / kUnit), turned = ScaledPath(path, 0),
@@ -253,6 +333,7 @@ int main(int argc, char** argv) {
                               {"seeds", "3"},
                               {"cameras", "still,turning,hand-held,walking,orbit"},
                               {"background", "points"},
+                              {"hide", ""},
                               {"write", ""},
                               {"json", ""}},
                              bodyloom::Run);

@@ -6,12 +6,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "data_tools/synthesis/people/wardrobe.h"
 #include "geometry/base/check.h"
 #include "geometry/base/hash_random.h"
+#include "geometry/base/percentile.h"
 #include "geometry/body/posed_body.h"
 #include "geometry/scene/camera_path.h"
 #include "render/view/view_camera.h"
@@ -119,14 +119,11 @@ RenderedRoom::RenderedRoom(const BodyModel& body, const SynthClip& clip, RoomKin
   room_from_scene_.camera_from_world_rotation = RoomAxes(clip);
   const Motion& motion = clip.truth.motion;
   std::vector<Vector3d> people, cameras;
-  double floor = std::numeric_limits<double>::infinity();
+  std::vector<double> lowest;
   for (int t = 0; t < motion.num_frames(); ++t) {
     people.push_back(MovedPoint(room_from_scene_, PelvisOf(clip, t)));
     cameras.push_back(CentreOf(CameraFromRoom(t)));
-    const MatrixX3d& joints = clip.truth.joints[size_t(t)];
-    for (Eigen::Index j = 0; j < joints.rows(); ++j) {
-      floor = std::min(floor, MovedPoint(room_from_scene_, joints.row(j).transpose()).y());
-    }
+    lowest.push_back(BodyInRoom(t).col(1).minCoeff());
   }
   low_ = high_ = people.front();
   for (const std::vector<Vector3d>* places : {&people, &cameras}) {
@@ -134,7 +131,7 @@ RenderedRoom::RenderedRoom(const BodyModel& body, const SynthClip& clip, RoomKin
   }
   low_.array() -= kMargin_m;
   high_.array() += kMargin_m;
-  low_.y() = floor - 0.06;  // joints of the feet are inside them
+  low_.y() = Percentile(lowest, 50);
   high_.y() = low_.y() + kHeight_m;
   const bool patterned = kind != RoomKind::kBlank;
   AddBox(low_, high_, patterned);
@@ -146,6 +143,13 @@ CameraPose RenderedRoom::CameraFromRoom(int frame) const {
   const CameraPose scene_from_room = Inverse(room_from_scene_);
   const std::vector<CameraPose>& path = clip_.truth.camera_from_scene;
   return path.empty() ? scene_from_room : Compose(path[size_t(frame)], scene_from_room);
+}
+
+MatrixX3d RenderedRoom::BodyInRoom(int frame) const {
+  const Motion& motion = clip_.truth.motion;
+  const BodyPose pose =
+      PoseFromAxisAngle(body_, motion.poses.row(frame).transpose(), motion.trans.row(frame).transpose());
+  return MovedPoints(room_from_scene_, PoseVertices(body_, motion.betas, pose));
 }
 
 void RenderedRoom::AddSurface(const Vector3d& corner, const Vector3d& along, const Vector3d& across, bool patterned) {
@@ -258,10 +262,7 @@ Vector3f RenderedRoom::SurfaceColour(int face, const Vector3d& ray, const Camera
 void RenderedRoom::Draw(int frame, Image* image, LabelImage* people) {
   const Camera& camera = clip_.truth.camera;
   const CameraPose camera_from_room = CameraFromRoom(frame);
-  const Motion& motion = clip_.truth.motion;
-  const BodyPose pose =
-      PoseFromAxisAngle(body_, motion.poses.row(frame).transpose(), motion.trans.row(frame).transpose());
-  const MatrixX3d bare = MovedPoints(room_from_scene_, PoseVertices(body_, motion.betas, pose));
+  const MatrixX3d bare = BodyInRoom(frame);
   const auto room_vertices = static_cast<Eigen::Index>(4 * surfaces_.size());
   const auto room_faces = static_cast<Eigen::Index>(2 * surfaces_.size());
   const auto bodies = static_cast<Eigen::Index>(1 + crowd_.size());

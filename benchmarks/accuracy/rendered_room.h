@@ -2,7 +2,9 @@
 /// Draws a room around the person of a synthetic clip, as the clip's camera sees it: pixels with exact truth for
 /// everything that follows a camera's motion from the background.
 ///
-/// The room is a box with furniture, parallel to the floor, larger than all places of the person and the camera.
+/// The room is a box with furniture, parallel to the floor, larger than all places of the person and the camera. Its
+/// floor lies where the lowest point of the body is in the median frame: feet of recorded motions sink and float by a
+/// few centimetres about it.
 /// Its surfaces carry smooth noise of 2 to 100 cm, rectangles (tiles, pictures, papers) and one colour each, sampled at
 /// the size of a pixel. Furniture does not stand where the person walks or the camera goes, nor between them.
 ///   kFurnished  as above
@@ -58,6 +60,8 @@ class RenderedRoom {
   [[nodiscard]] Eigen::Vector3f SurfaceColour(int face, const Eigen::Vector3d& ray, const CameraPose& camera_from_room,
                                               double metres_per_pixel_at_1) const;
   [[nodiscard]] CameraPose CameraFromRoom(int frame) const;
+  /// Vertices of the clip's person, room coordinates.
+  [[nodiscard]] MatrixX3d BodyInRoom(int frame) const;
 
   const BodyModel& body_;
   const SynthClip& clip_;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "geometry/base/check.h"
-#include "geometry/base/percentile.h"
 #include "geometry/scene/camera_path.h"
 #include "tracking/problem/robust.h"
 
@@ -20,8 +19,9 @@ constexpr double kLastKernel =
     1;  // of either foot: during a change of feet neither stands, and all such steps bias s in one direction
 constexpr double kMaxRunStepS = 0.25;
 constexpr int kReweightings = 30;
-constexpr double kFrameSigma = 0.04, kSizeSigma = 0.04;  // of log s: of one frame by the floor, and of the body's size
-constexpr double kFloorFramesS = 0.4, kFloorShare = 0.4, kFloorAgrees = 0.1, kErrorsLastS = 0.3;
+constexpr double kSizeSigma = 0.04;  // of log s, by the body's size
+constexpr double kRollMps = 0.05;    // standing feet's mean velocity over a clip
+constexpr double kPlaceStepS = 0.5, kPlaceCorrelationS = 1, kPlaceMps = 0.25;
 constexpr size_t kMaxStarts = 256;  // from either foot: each costs a pass over the clip
 
 /// One frame of a run: its whitened offset from the run's mean, a + s b.
@@ -228,6 +228,30 @@ CameraScale ScaleOfStandingFeet(const std::vector<StandingRun>& runs, size_t num
   return result;
 }
 
+/// σ of log s by the mean velocity of standing feet (header): their way adds to or takes from that of the camera.
+double SigmaByRolling(double scale_m, std::span<const double> timestamps, const std::vector<char>& cut_before,
+                      std::span<const CameraPose> unit_path) {
+  Vector3d way = Vector3d::Zero();
+  double squares = 0;
+  for (size_t t = 1; t < timestamps.size(); ++t) {
+    const double seconds = timestamps[t] - timestamps[t - 1];
+    if (cut_before[t] != 0 || !(seconds > 0)) continue;
+    const Vector3d step = CentreOf(unit_path[t]) - CentreOf(unit_path[t - 1]);
+    way += step;
+    squares += step.squaredNorm() / seconds;
+  }
+  return squares > 0 ? kRollMps * way.norm() / (scale_m * squares) : 0;
+}
+
+CameraScale WithSigmaByRolling(CameraScale scale, std::span<const double> timestamps,
+                               const std::vector<char>& cut_before, std::span<const CameraPose> unit_path) {
+  if (scale.found) {
+    const double rolling = SigmaByRolling(scale.scale_m, timestamps, cut_before, unit_path);
+    scale.sigma_m = std::hypot(scale.sigma_m, rolling * scale.scale_m);
+  }
+  return scale;
+}
+
 }  // namespace
 
 CameraScale EstimateCameraScale(std::span<const Feet> points, std::span<const double> timestamps,
@@ -247,85 +271,67 @@ CameraScale EstimateCameraScale(std::span<const Feet> points, std::span<const do
   const double seconds_a_frame = (timestamps.back() - timestamps.front()) / static_cast<double>(timestamps.size() - 1);
   const CameraScale unnamed =
       ScaleOfUnnamedFeet(StepsOf(points, timestamps, cut_before, unit_path, options), seconds_a_frame, options);
-  if (!named.found || !unnamed.found) return unnamed.found ? unnamed : named;
-  if (named.sigma_m < options.sure_relative_sigma * named.scale_m) return named;
-  return unnamed.sigma_m * named.scale_m < named.sigma_m * unnamed.scale_m ? unnamed : named;
+  const auto better = [&]() -> const CameraScale& {
+    if (!named.found || !unnamed.found) return unnamed.found ? unnamed : named;
+    if (named.sigma_m < options.sure_relative_sigma * named.scale_m) return named;
+    return unnamed.sigma_m * named.scale_m < named.sigma_m * unnamed.scale_m ? unnamed : named;
+  };
+  return WithSigmaByRolling(better(), timestamps, cut_before, unit_path);
 }
 
-CameraScale ScaleByFloor(std::span<const Feet> points, std::span<const double> heights_m,
-                         std::span<const double> timestamps, std::span<const CameraPose> unit_path,
-                         const PointsFloor& floor) {
-  BODYLOOM_CHECK(points.size() == heights_m.size() && timestamps.size() == unit_path.size(),
-                 "scale by the floor: ", points.size(), " points of the feet with ", heights_m.size(), " heights, ",
-                 timestamps.size(), " timestamps and ", unit_path.size(), " cameras, expected as many of each");
+CameraScale ScaleByPlace(std::span<const Vector3d> places_m, std::span<const double> timestamps,
+                         const std::vector<char>& cut_before, std::span<const CameraPose> unit_path) {
+  BODYLOOM_CHECK(places_m.size() == timestamps.size() && places_m.size() == cut_before.size() &&
+                     places_m.size() == unit_path.size(),
+                 "camera scale: ", places_m.size(), " places, ", timestamps.size(), " timestamps, ", cut_before.size(),
+                 " cuts and ", unit_path.size(), " cameras, expected as many of each");
   CameraScale result;
-  result.why = floor.why;
-  if (!floor.found || timestamps.size() < 2) return result;
-  std::vector<double> logs, off_floor;
-  for (size_t t = 0; t < timestamps.size(); ++t) {
-    const double units = floor.HeightOf(CentreOf(unit_path[t]));
-    double metres = 0;
-    Vector3d lowest = Vector3d::Zero();
-    for (size_t k = 0; k < points.size(); ++k) {
-      for (const FootPlace& foot : points[k][t]) {
-        if (!foot.seen || !foot.ankle_m.allFinite()) continue;
-        const Vector3d from_camera = unit_path[t].camera_from_world_rotation.transpose() * foot.ankle_m;
-        const double below = heights_m[k] - floor.up.dot(from_camera);
-        if (below > metres) metres = below, lowest = from_camera;
-      }
-    }
-    if (!(units > 0) || !(metres > 0)) continue;
-    logs.push_back(std::log(metres / units));
-    off_floor.push_back(floor.SigmaAt(CentreOf(unit_path[t]) + lowest * (units / metres)) / units);
-  }
-  result.why = "no foot is seen on the floor";
-  const double seconds_a_frame = (timestamps.back() - timestamps.front()) / static_cast<double>(timestamps.size() - 1);
-  if (double(logs.size()) * seconds_a_frame < kFloorFramesS) return result;
-  const auto weight = [&](double log, double mode) {
-    const double off = (log - mode) / kFrameSigma;
-    return GemanMcClure(off * off, kLastKernel).weight;
+  result.why = "the person's place does not tell it";
+  const size_t T = timestamps.size();
+  const auto in_scene = [&](size_t t) -> Vector3d {
+    return unit_path[t].camera_from_world_rotation.transpose() * places_m[t];
   };
-  // The start is the place where most frames agree; from there the mode is a fixed point.
-  double mode = 0, most = 0;
-  for (size_t i = 0; i < logs.size(); i += 1 + logs.size() / kMaxStarts) {
-    double sum = 0;
-    for (const double log : logs) sum += weight(log, logs[i]);
-    if (sum > most) most = sum, mode = logs[i];
+  std::vector<Offset> velocities;
+  double seconds = 0;
+  for (size_t begin = 0, end = 0; begin < T; ++begin) {
+    bool is_cut = false;
+    for (end = begin + 1; end < T && timestamps[end] - timestamps[begin] < kPlaceStepS; ++end) {
+      is_cut = is_cut || cut_before[end] != 0;
+    }
+    if (end >= T || is_cut || cut_before[end] != 0) continue;
+    const double step = timestamps[end] - timestamps[begin];
+    if (step > kPlaceStepS + kMaxRunStepS) continue;
+    velocities.push_back(
+        {(in_scene(end) - in_scene(begin)) / step, (CentreOf(unit_path[end]) - CentreOf(unit_path[begin])) / step});
+    seconds += timestamps[begin + 1] - timestamps[begin];
   }
-  for (int pass = 0; pass < kReweightings; ++pass) {
-    double sum = 0, weights = 0;
-    for (const double log : logs) sum += weight(log, mode) * log, weights += weight(log, mode);
-    mode = sum / weights;
-  }
-  double agree = 0, squares = 0;
-  for (const double log : logs) {
-    if (std::abs(log - mode) > kFloorAgrees) continue;
-    agree += 1;
-    squares += (log - mode) * (log - mode);
-  }
-  result.why = "feet are seldom at one height above the floor";
-  if (agree * seconds_a_frame < kFloorFramesS || agree < kFloorShare * double(logs.size())) return result;
-  const double independent = std::max(1.0, agree * std::min(1.0, seconds_a_frame / kErrorsLastS));
-  const double of_frames = std::sqrt((squares / agree + kFrameSigma * kFrameSigma) / independent);
-  const double of_floor = Percentile(off_floor, 50);
-  result.scale_m = std::exp(mode);
-  result.sigma_m = result.scale_m * std::sqrt(of_frames * of_frames + of_floor * of_floor + kSizeSigma * kSizeSigma);
-  result.found = result.sigma_m <= CameraScaleOptions().max_relative_sigma * result.scale_m;
-  result.why = "feet on the floor, " + floor.why;
+  const Normal normal = NormalOf(velocities, 0, 0);
+  if (!(normal.H > 0)) return result;
+  const double s = -normal.g / normal.H;
+  double squares = 0;
+  for (const Offset& v : velocities) squares += (v.a + s * v.b).squaredNorm();
+  const auto count = static_cast<double>(velocities.size());
+  const double independent = std::max(1.0, seconds / kPlaceCorrelationS);
+  result.scale_m = s;
+  result.sigma_m = std::sqrt((squares / count + kPlaceMps * kPlaceMps) / (independent * normal.H / count));
+  result.found = s > 0 && result.sigma_m <= CameraScaleOptions().max_relative_sigma * s;
+  if (result.found) result.why = "the person stays in one place, the camera goes round";
   return result;
 }
 
 CameraScale JoinScales(const CameraScale& feet, const CameraScale& floor) {
-  if (!feet.found || !floor.found) return floor.found ? floor : feet;
-  const double of_feet = std::pow(feet.scale_m / feet.sigma_m, 2),
-               of_floor = std::pow(floor.scale_m / floor.sigma_m, 2);
-  CameraScale joined = floor;
-  joined.scale_m =
-      std::exp((of_feet * std::log(feet.scale_m) + of_floor * std::log(floor.scale_m)) / (of_feet + of_floor));
-  // The body's size is an error of both.
-  const double relative = std::sqrt(1 / (of_feet + of_floor));
-  joined.sigma_m = joined.scale_m * std::max(relative, kSizeSigma);
-  joined.why = floor.why + "; " + feet.why;
+  CameraScale joined = floor.found ? floor : feet;
+  if (!joined.found) return joined;
+  double relative = joined.sigma_m / joined.scale_m;
+  if (feet.found && floor.found) {
+    const double of_feet = std::pow(feet.scale_m / feet.sigma_m, 2),
+                 of_floor = std::pow(floor.scale_m / floor.sigma_m, 2);
+    joined.scale_m =
+        std::exp((of_feet * std::log(feet.scale_m) + of_floor * std::log(floor.scale_m)) / (of_feet + of_floor));
+    relative = 1 / std::sqrt(of_feet + of_floor);
+    joined.why = floor.why + "; " + feet.why;
+  }
+  joined.sigma_m = joined.scale_m * std::hypot(relative, kSizeSigma);
   return joined;
 }
 

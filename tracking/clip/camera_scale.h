@@ -19,10 +19,13 @@
 /// the cost at s = 0 and its σ is small enough; frames within 0.3 s count as one measurement. Of two results that with
 /// the smaller σ/s is returned, the first one where its σ/s is below 0.05.
 ///
-/// A floor found among points of the background (PointsFloor) tells more: the camera is u_f units above it and, by the
-/// lowest point of the feet, m_f = a − up · R_fᵀ x_f metres, a: the point's height on a foot that rests. So
-/// s_f = m_f / u_f in every frame in which a foot is down, whether it stands, rolls or slides and whatever the camera
-/// does; s is their mode (Geman–McClure, c = 1, σ of a frame 4 %). Both estimates join by 1/σ² of log s.
+/// Feet roll, and those of recorded motions slide: their mean velocity along the camera's way has σ 5 cm/s (three
+/// motions, cameras that go along and round: 0.5 to 8 cm/s, bodyloom_bench_moving_camera). It biases s of a camera that
+/// keeps its direction:
+///   σ_log = 0.05 ‖mean c'‖ / (s mean ‖c'‖²)     c': the camera's velocity at scale 1; part of the result's σ
+///
+/// A camera that goes round somebody who stays in one place has its scale from that place (ScaleByPlace), for clips in
+/// which neither feet nor floor (floor_scale.h) tell it.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,7 +35,6 @@
 #include <vector>
 
 #include "geometry/scene/camera.h"
-#include "tracking/camera_motion/points_floor.h"
 #include "tracking/initialise/ground_plane.h"
 
 namespace bodyloom {
@@ -57,19 +59,21 @@ struct CameraScaleOptions {
 
 /// `points`: ankles, and other points of the feet of the same frames (toes, heels), in the camera frame of their frame;
 /// `unit_path`: camera_from_scene at scale 1; `cut_before`: frames at which runs end. All have the same number of
-/// frames (checked).
+/// frames (checked). σ is without that of the body's size.
 CameraScale EstimateCameraScale(std::span<const std::vector<std::array<FootPlace, 2>>> points,
                                 std::span<const double> timestamps, const std::vector<char>& cut_before,
                                 std::span<const CameraPose> unit_path, const CameraScaleOptions& options = {});
 
-/// The scale by the floor. `points` as above; `heights_m`: of each of them on a foot that rests. Found when four tenths
-/// of the frames with a foot, over 0.4 s at least, agree within 10 %. σ holds the floor's, that of the frames, and of
-/// the body's size 4 %. Throws std::invalid_argument for numbers that differ.
-CameraScale ScaleByFloor(std::span<const std::vector<std::array<FootPlace, 2>>> points,
-                         std::span<const double> heights_m, std::span<const double> timestamps,
-                         std::span<const CameraPose> unit_path, const PointsFloor& floor);
+/// The scale for which the person moves least: places p_f in the camera frame, y_f(s) = R_fᵀ p_f + s c_f,
+///   min_s Σ_f ‖v_f(s)‖²     v_f: velocity of y over half a second
+/// σ² = (mean ‖v_f‖² + (0.25 m/s)²) / (n mean ‖c'‖²), n: seconds of the clip, because velocities of people last for a
+/// second. A camera that goes along with somebody who walks has s near 0 and a large σ; above σ/s = 0.35 none is found.
+/// `places_m`: one a frame, of the pelvis; the other numbers as above (checked).
+CameraScale ScaleByPlace(std::span<const Eigen::Vector3d> places_m, std::span<const double> timestamps,
+                         const std::vector<char>& cut_before, std::span<const CameraPose> unit_path);
 
-/// One scale from that of the feet and that of the floor; either may not be found.
+/// One scale from that of the feet and that of the floor, either of which may not be found: the mean of log s by 1/σ².
+/// Its σ also holds that of the body's size, 4 %, an error of both.
 CameraScale JoinScales(const CameraScale& feet, const CameraScale& floor);
 
 }  // namespace bodyloom

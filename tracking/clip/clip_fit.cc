@@ -16,6 +16,7 @@
 #include "geometry/scene/camera_path.h"
 #include "tracking/clip/camera_scale.h"
 #include "tracking/clip/clip_views.h"
+#include "tracking/clip/floor_scale.h"
 #include "tracking/clip/term_kinds.h"
 #include "tracking/clip/track_plan.h"
 #include "tracking/clip/track_result.h"
@@ -63,7 +64,7 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
 constexpr double kStatureSpreadM = 0.1;
 
 /// Above the floor, of the lifter's points of a foot that stands flat, metres.
-constexpr double kToeHeight = 0.02, kHeelHeight = 0.03;
+constexpr double kToeHeight = 0.012, kHeelHeight = 0.027;
 
 /// Widens the kernels of dense keypoints for starts from hypotheses. Errors of hypotheses are proportional to the body,
 /// while a dense keypoint's σ is in pixels: in a large image all keypoints would be outliers at the start. (Starts from
@@ -286,12 +287,24 @@ void ClipFit::FitCameraScale(SequenceProblem* coarse) {
     }
   }
   CameraScale scale = EstimateCameraScale(points, coarse->timestamps, coarse->cut_before, unit_path);
+  CameraScale by_floor;
   if (input_.background_points != nullptr) {
     if (const UpEstimate up = UpInScene(lifted_.frames, problem_.frames); up.found) {
       const PointsFloor floor = FindPointsFloor(*input_.background_points, up.up);
-      scale = JoinScales(scale, ScaleByFloor(points, heights_m, coarse->timestamps, unit_path, floor));
+      by_floor = ScaleByFloor(points, heights_m, coarse->timestamps, unit_path, floor);
     }
   }
+  if (!scale.found && !by_floor.found) {
+    std::vector<Eigen::Vector3d> pelvises;
+    const Eigen::Vector3d at_rest = input_.body->RestJoints(coarse->betas).row(0).transpose();
+    for (size_t i = 0; i < coarse_frames_.size(); ++i) {
+      pelvises.push_back(
+          MovedPoint(camera_path_[coarse_frames_[i]], at_rest + coarse->layout.BodyPlace(coarse->states[i])));
+    }
+    const CameraScale by_place = ScaleByPlace(pelvises, coarse->timestamps, coarse->cut_before, unit_path);
+    if (by_place.found) scale = by_place;
+  }
+  scale = JoinScales(scale, by_floor);
   summary.why = scale.why;
   summary.scale_m = scale.found ? scale.scale_m : 0;
   summary.sigma_m = scale.found ? scale.sigma_m : 0;

@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
+#include "tracking/clip/floor_scale.h"
 
 namespace bodyloom::camera_scale_test {
 namespace {
@@ -152,8 +154,8 @@ TEST(CameraScale, FeetOnTheFloorTellItWhateverTheySlide) {
         ScaleByFloor({&walk.feet, 1}, std::array{kAnkleHeight}, walk.timestamps, walk.unit_path, FloorAt(scale));
     ASSERT_TRUE(found.found) << found.why;
     EXPECT_NEAR(found.scale_m, scale, 1e-3 * scale);  // the kernel's tail at a jump
-    EXPECT_GT(found.sigma_m, 0.04 * scale);           // of the body's size
-    EXPECT_LT(found.sigma_m, 0.08 * scale);
+    EXPECT_GT(found.sigma_m, 0.005 * scale);
+    EXPECT_LT(found.sigma_m, 0.04 * scale);
   }
   WalkBeside walk(1);
   EXPECT_FALSE(
@@ -168,12 +170,73 @@ TEST(CameraScale, OfFeetAndOfTheFloorJoinBySigma) {
   const CameraScale feet{true, "feet", 2, 0.2}, floor{true, "floor", 2.2, 0.11}, none;
   const CameraScale joined = JoinScales(feet, floor);
   ASSERT_TRUE(joined.found);
-  // Weights 100 and 400.
+  // Weights 100 and 400; the body's size is an error of both.
   EXPECT_NEAR(std::log(joined.scale_m), (std::log(2.0) + 4 * std::log(2.2)) / 5, 1e-12);
-  EXPECT_NEAR(joined.sigma_m, joined.scale_m / std::sqrt(500.0), 1e-12);
+  EXPECT_NEAR(joined.sigma_m, joined.scale_m * std::sqrt(1 / 500.0 + 0.04 * 0.04), 1e-12);
   EXPECT_EQ(JoinScales(feet, none).scale_m, 2);
+  EXPECT_NEAR(JoinScales(feet, none).sigma_m, 2 * std::hypot(0.1, 0.04), 1e-12);
   EXPECT_EQ(JoinScales(none, floor).scale_m, 2.2);
   EXPECT_FALSE(JoinScales(none, none).found);
+}
+
+TEST(CameraScale, FeetThatRollOnAllTheWayAreWithinItsSigma) {
+  CameraScaleOptions sharp;
+  sharp.across_m = 0.003;
+  sharp.along_m = 0.012;
+  for (const double slide : {-0.05, 0.05}) {
+    const WalkBeside walk(2, slide, 1);
+    const CameraScale found =
+        EstimateCameraScale({&walk.feet, 1}, walk.timestamps, walk.cut_before, walk.unit_path, sharp);
+    ASSERT_TRUE(found.found) << found.why;
+    EXPECT_NEAR(std::abs(found.scale_m - 2), 2 * 0.05 / 1.1, 0.02);  // the slide is a part of the camera's way
+    EXPECT_LT(std::abs(found.scale_m - 2), 1.5 * found.sigma_m);
+    EXPECT_LT(found.sigma_m, 0.12);
+  }
+}
+
+/// Somebody sways in one place, or goes along, before a camera that goes round by a right angle in six seconds.
+struct GoRound {
+  std::vector<Vector3d> places;
+  std::vector<double> timestamps;
+  std::vector<char> cut_before;
+  std::vector<CameraPose> unit_path;
+
+  GoRound(double scale, double walk_mps, double turn) {
+    for (int t = 0; t < 90; ++t) {
+      const double seconds = t / 15.0, angle = turn * seconds / 6;
+      const Vector3d person(0.05 * std::sin(3 * seconds) + walk_mps * seconds, 0, 3 + 0.03 * std::cos(5 * seconds));
+      const Vector3d middle(walk_mps * seconds, 0, 3);
+      const Vector3d centre = middle - 3 * Vector3d(std::sin(angle), 0, std::cos(angle));
+      CameraPose camera{RotationFromAxisAngle({0, -angle, 0}), {}};
+      camera.camera_from_world_translation = -camera.camera_from_world_rotation * centre;
+      places.push_back(MovedPoint(camera, person));
+      timestamps.push_back(seconds);
+      cut_before.push_back(0);
+      camera.camera_from_world_translation /= scale;
+      unit_path.push_back(camera);
+    }
+  }
+  [[nodiscard]] CameraScale Estimate() const { return ScaleByPlace(places, timestamps, cut_before, unit_path); }
+};
+
+TEST(CameraScale, SomebodyWhoStaysTellsItToACameraThatGoesRound) {
+  for (const double scale : {0.3, 1.0, 7.5}) {
+    const CameraScale found = GoRound(scale, 0, M_PI / 2).Estimate();
+    ASSERT_TRUE(found.found) << found.why;
+    EXPECT_NEAR(found.scale_m, scale, 0.05 * scale);
+    EXPECT_GT(found.sigma_m, 0.1 * scale);  // who stays may still go slowly
+    EXPECT_LT(found.sigma_m, 0.25 * scale);
+  }
+}
+
+TEST(CameraScale, SomebodyWhoWalksDoesNot) {
+  EXPECT_FALSE(GoRound(2, 1.3, M_PI / 2).Estimate().found);
+  EXPECT_FALSE(GoRound(2, 1.3, 0).Estimate().found);
+  EXPECT_FALSE(GoRound(2, 0, 0).Estimate().found);  // nor does a camera that stands
+  GoRound cut(2, 0, M_PI / 2);
+  std::fill(cut.cut_before.begin(), cut.cut_before.end(), 1);
+  EXPECT_FALSE(cut.Estimate().found);
+  EXPECT_THROW(ScaleByPlace(cut.places, cut.timestamps, {}, cut.unit_path), std::invalid_argument);
 }
 
 }  // namespace
