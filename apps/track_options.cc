@@ -182,6 +182,9 @@ void AddSolveOptions(CLI::App& app, TrackSettings* request) {
          "let the surface be below the ground or hover above it")
       ->group(kSolve);
   app.add_flag_callback(
+         "--no-held-contacts", [&s] { s.ground.hold_weight = 0; }, "let soles that rest on the ground slide on it")
+      ->group(kSolve);
+  app.add_flag_callback(
          "--no-balance", [&s] { s.ground.balance_weight = 0; },
          "let the centre of mass be anywhere above what touches the ground")
       ->group(kSolve);

@@ -35,6 +35,14 @@ nlohmann::ordered_json ToJson(const RoomPhysics& room) {
   return json;
 }
 
+void AddJumps(const FlightSummary& flights, nlohmann::ordered_json* report) {
+  if (flights.flights == 0) return;
+  (*report)["jumps"] = {{"flights", flights.flights},
+                        {"stature_m", flights.stature_m},
+                        {"sigma_m", flights.sigma_m},
+                        {"assumed_m", flights.assumed_m}};
+}
+
 void AddHandsAndFaces(const HandsAndFaceSummary& summary, nlohmann::ordered_json* report) {
   if (!summary.why_not.empty()) (*report)["hands_not_looked_for"] = summary.why_not;
   if (summary.hands.parts == 0) return;

@@ -24,6 +24,9 @@ nlohmann::ordered_json ToJson(const WorldFrame& world);
 /// "balance_p95_mm", "lean_median_deg"} (data_tools/evaluation/room_physics.h); null without frames.
 nlohmann::ordered_json ToJson(const RoomPhysics& room);
 
+/// Adds "jumps": {"flights", "stature_m", "sigma_m", "assumed_m"} (tracking/room/flights.h) where there are some.
+void AddJumps(const FlightSummary& flights, nlohmann::ordered_json* report);
+
 /// Adds "hands": {"looked_for", "found", "hidden", "too_small", "not_seen", "at_other_hand"}, "faces": the same, and
 /// "hands_and_faces_seconds"; or "hands_not_looked_for": why. Nothing when they were not wanted.
 void AddHandsAndFaces(const HandsAndFaceSummary& summary, nlohmann::ordered_json* report);

@@ -54,6 +54,7 @@ void WriteReportPage(const TrackRequest& request, const TrackInputs& inputs, con
   page.title = std::filesystem::path(report->detections).filename().string();
   page.summary = report->solve.BriefReport();
   if (report->room.frames > 0) page.summary += "room     " + report->room.BriefReport() + "\n";
+  if (report->solve.flights.flights > 0) page.summary += "jumps    " + report->solve.flights.BriefReport() + "\n";
   callbacks.Begin("writing the page");
   WriteClipPage(page, callbacks);
   report->outputs.push_back(request.report);

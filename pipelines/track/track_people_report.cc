@@ -33,6 +33,7 @@ std::string PersonText(const TrackedPerson& person) {
   text += FittedPartsText(person.solve);
   if (!person.views.empty()) text += "         seen by " + Joined(person.views) + "\n";
   if (person.room.frames > 0) text += "         " + person.room.BriefReport() + "\n";
+  if (person.solve.flights.flights > 0) text += "         " + person.solve.flights.BriefReport() + "\n";
   if (person.seen.joined > 0) {
     text += Concatenate("         found ", person.seen.joined + 1, " times over in the same body, joined\n");
   }
@@ -88,6 +89,7 @@ Json PersonJson(const TrackedPerson& person) {
                {"hidden_frames", person.hidden.frames},
                {"fitted_again", person.fitted_again},
                {"room", ToJson(person.room)}};
+  AddJumps(solve.flights, &json);
   AddFittedParts(solve, &json);
   if (!person.views.empty()) json["views"] = person.views;
   return json;

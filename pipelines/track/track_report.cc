@@ -170,6 +170,7 @@ std::string ToText(const TrackReport& report) {
   }
   if (solve.IsUsable()) text += "world    " + report.world.BriefReport() + "\n";
   if (report.room.frames > 0) text += "room     " + report.room.BriefReport() + "\n";
+  if (solve.flights.flights > 0) text += "jumps    " + solve.flights.BriefReport() + "\n";
   text += "time     " + Fixed(report.total_seconds, 2) + " s (" + StagesText(StagesOf(report)) + ")";
   if (report.num_frames > 0 && report.total_seconds > 0) {
     text += ", " + Fixed(1e3 * report.total_seconds / report.num_frames, 2) + " ms a frame";
@@ -248,6 +249,7 @@ std::string ToJson(const TrackReport& report) {
   if (report.camera_path.any() || !report.camera_path.motion.empty())
     json["camera_path"] = ToJson(report.camera_path, solve.camera_path);
   for (const ViewReport& view : report.views) json["views"].push_back(ToJson(view));
+  AddJumps(solve.flights, &json);
   AddFittedParts(solve, &json);
   if (report.initialiser) json["initialiser"] = ToJson(*report.initialiser);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -30,6 +30,7 @@
 #include "tracking/problem/input_checks.h"
 #include "tracking/problem/moving_camera.h"
 #include "tracking/problem/stature.h"
+#include "tracking/room/flights.h"
 #include "tracking/room/shared_scene.h"
 #include "tracking/solvers/chain/chain_problem.h"
 #include "tracking/solvers/residuals/acceleration_cost.h"
@@ -429,6 +430,7 @@ void ClipFit::Finish(TrackSequenceResult* result) {
   SummariseImageTerms(problem_, residuals, &summary_);
   for (const auto& term : terms_) term->Summarise(problem_, &summary_);
   result->track.world = WorldOfGround(summary_.ground, result->track.joints);
+  summary_.flights = StatureFromFlights(problem_, result->track, stature_m_, threads_);
   clock_.Record("finish");
   summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
   if (options_.estimate_uncertainty) {

@@ -27,6 +27,7 @@ bool TrackSequenceOptions::IsValid(std::string* why) const {
       !in_range("ground.sigma_height_m", ground.sigma_height_m, 1e-4, 1e3) ||
       !in_range("ground.sigma_slide_m", ground.sigma_slide_m, 1e-4, 1e3) ||
       !in_range("ground.surface_weight", ground.surface_weight, 0, 1e6) ||
+      !in_range("ground.hold_weight", ground.hold_weight, 0, 1e6) ||
       !in_range("ground.balance_weight", ground.balance_weight, 0, 1e6) ||
       !in_range("rendered_uv.weight", rendered_uv.weight, 0, 1e6) ||
       !in_range("rendered_uv.max_points", rendered_uv.max_points, 1, 1e7) ||

@@ -105,6 +105,7 @@ struct GroundOptions {
   double sigma_height_m = 0.03;  ///< of a standing ankle's height
   double sigma_slide_m = 0.03;   ///< of its position on the ground while the foot stands
   double surface_weight = 1;     ///< of the surface not being below the ground, and touching it; 0: off
+  double hold_weight = 1;        ///< of points of soles that are held where they rest, beside surface_weight; 0: off
   double balance_weight = 1;     ///< of the centre of mass standing above what touches the ground; 0: off
   /// Neither the vertical nor the ground.
   static GroundOptions Off() {

@@ -23,6 +23,14 @@ std::string WorstStretch::BriefReport() const {
   return text;
 }
 
+std::string FlightSummary::BriefReport() const {
+  if (flights == 0) return "";
+  char text[200];
+  std::snprintf(text, sizeof text, "%d %s that the person is %.2f m +- %.2f m tall; %.2f m was assumed", flights,
+                flights == 1 ? "jump says" : "jumps say", stature_m, sigma_m, assumed_m);
+  return text;
+}
+
 std::string TrackSequenceSummary::FramesReport() const {
   std::ostringstream out;
   for (const auto& [name, count] : frames_by_status) {

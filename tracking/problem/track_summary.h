@@ -84,6 +84,16 @@ struct GroundSummary {
   std::vector<StandingFoot> stances;  ///< all of the longest shot, on the plane or not, at their solved positions
 };
 
+/// The stature that the person's jumps tell (room/flights.h).
+struct FlightSummary {
+  int flights = 0;       ///< that tell it
+  std::string why;       ///< the reason why there are none
+  double assumed_m = 0;  ///< stature of the track
+  double stature_m = 0, sigma_m = 0;
+  /// "4 jumps say that the person is 1.66 m +- 0.08 m tall; 1.75 m was assumed"; empty without flights.
+  [[nodiscard]] std::string BriefReport() const;
+};
+
 /// Scale of a moving camera's path.
 struct CameraPathSummary {
   bool moves = false;      ///< a path was given
@@ -148,6 +158,7 @@ struct TrackSequenceSummary {
   double stature_m = 0;  ///< as given in the input; 0: the mean body's
   int num_observations = 0, num_parameters = 0;
   GroundSummary ground;
+  FlightSummary flights;
   CameraPathSummary camera_path;
   std::vector<PartFitSummary> hands;   ///< left and right; empty: no hands and faces were given
   std::optional<PartFitSummary> head;  ///< none: the same

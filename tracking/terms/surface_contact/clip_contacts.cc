@@ -329,6 +329,7 @@ std::vector<std::optional<Vector3d>> HeldPlaces(const std::vector<Vector3d>& pat
 
 ClipContacts::ClipContacts(const ClipTermInput& clip)
     : weight_(clip.options.ground.surface_weight),
+      hold_weight_(kHoldWeight * clip.options.ground.hold_weight),
       level_is_given_(clip.input.ground != nullptr && clip.input.ground->has_plane),
       num_threads_(clip.num_threads),
       points_(FindContactPoints(*clip.layout.model)),
@@ -344,13 +345,16 @@ void ClipContacts::StartRound(int /*round*/, const std::vector<int>& /*frames*/,
   std::vector<std::vector<char>> touches(problem->frames.size());
   for (size_t t = 0; t < problem->frames.size(); ++t) touches[t] = FindTouching(*problem, points_, all, hovers, t);
   if (!level_is_given_) MoveGrounds(points_, touches, problem, &all);
-  const auto held = FindHeld(*problem, points_, touches, all);
+  const auto held = hold_weight_ > 0
+                        ? FindHeld(*problem, points_, touches, all)
+                        : std::vector(points_.size(), std::vector<std::optional<Vector3d>>(touches.size()));
   for (size_t t = 0; t < problem->frames.size(); ++t) {
     FrameData& frame = problem->frames[t];
     auto& term = frame.Get<SurfaceContactTerm>();
     term.contacts.clear();
     if (frame.ground == nullptr) continue;
     term.weight = weight_;
+    term.hold_weight = hold_weight_;
     term.up = frame.ground->up;
     term.level_m = frame.ground->level_m;
     if (const CameraPose* camera = frame.camera_from_scene; camera != nullptr) {
@@ -374,8 +378,11 @@ void ClipContacts::StartRound(int /*round*/, const std::vector<int>& /*frames*/,
 std::vector<PlanEntry> PlanSurfaceContact(const TrackSequenceInput& input, const TrackSequenceOptions& options) {
   std::string why_not = WhyNoGround(input, options);
   if (why_not.empty() && !(options.ground.surface_weight > 0)) why_not = "switched off";
-  return {{"surface on the ground", why_not.empty(),
-           why_not.empty() ? "where a ground is found: nothing is below it, and what touches it lies on it" : why_not}};
+  std::vector<PlanEntry> plan = {
+      {"surface on the ground", why_not.empty(),
+       why_not.empty() ? "where a ground is found: nothing is below it, and what touches it lies on it" : why_not}};
+  if (why_not.empty() && !(options.ground.hold_weight > 0)) plan.push_back({"held contacts", false, "switched off"});
+  return plan;
 }
 
 bool SeeksContacts(const TrackSequenceInput& input, const TrackSequenceOptions& options) {

@@ -70,7 +70,7 @@ class ClipContacts : public ClipTerm {
   void StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) override;
 
  private:
-  double weight_;
+  double weight_, hold_weight_;
   bool level_is_given_;
   int num_threads_;
   std::vector<ContactPoint> points_;

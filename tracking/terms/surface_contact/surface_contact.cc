@@ -34,7 +34,7 @@ void SurfaceContactTerm::Add(FrameAccumulator* sums) const {
     if (free && !sums->one_by_one()) continue;
     if (contact.held_m) {
       const Eigen::Vector2d off = across * (x + offset - *contact.held_m) / hold_sigma_m;
-      const double scale = sums->AddGroup(2, off.squaredNorm(), kHoldKernel, kHoldWeight * weight);
+      const double scale = sums->AddGroup(2, off.squaredNorm(), kHoldKernel, hold_weight * weight);
       if (sums->derivatives()) {
         place(true);
         auto rows = sums->NextRows(3);

@@ -7,9 +7,9 @@
 /// the height of a sole's point above the lowest of a foot that stands flat; ρ: Geman–McClure with
 /// c = kSurfaceContactKernel; s_k = σ² / (σ² + σ_k²), σ_k² the variance of the ground's height at the point
 /// (FrameGround::HeightVariance), since a wrong vertical raises one end of a path or of somebody who lies, and lowers
-/// the other; P: onto two directions across u; a_k: the place where the point is held; w_h = kHoldWeight, because the
-/// points of a foot err together; ρ_h: as ρ, with kHoldKernel. Which points touch is found in clip_contacts.h and kept
-/// during a solve. Runs in frames of a shot whose ground is known.
+/// the other; P: onto two directions across u; a_k: the place where the point is held; w_h = kHoldWeight as a rule,
+/// because the points of a foot err together; ρ_h: as ρ, with kHoldKernel. Which points touch is found in
+/// clip_contacts.h and kept during a solve. Runs in frames of a shot whose ground is known.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,6 +37,7 @@ class SurfaceContactTerm : public CopyableTerm<SurfaceContactTerm> {
   double level_m = 0;                              ///< l
   double sigma_m = 0.02;                           ///< σ
   double hold_sigma_m = 0.03;                      ///< σ_h
+  double hold_weight = kHoldWeight;                ///< w_h
   double weight = 0;                               ///< w
   std::vector<Contact> contacts;
 

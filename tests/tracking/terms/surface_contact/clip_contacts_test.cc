@@ -66,6 +66,12 @@ class Clip {
     contacts.StartRound(round, {}, &problem_);
   }
   void GiveGround(const KnownGround* ground) { input_.ground = ground; }
+  void LetSlide() { options_.ground.hold_weight = 0; }
+  [[nodiscard]] int NumHeld(int t) const {
+    int count = 0;
+    for (const auto& contact : problem_.frames[t].Get<SurfaceContactTerm>().contacts) count += contact.held_m ? 1 : 0;
+    return count;
+  }
   void StartBalance() {
     balance_ = std::make_unique<ClipBalance>(Input());
     balance_->Observe(&problem_);
@@ -138,6 +144,17 @@ TEST(ClipContacts, SolesOfSomebodyWhoStandsTouch) {
       EXPECT_TRUE(!contact.touches || clip.body().data().v_template(contact.vertex, 1) < -0.9);
     }
   }
+}
+
+TEST(ClipContacts, RestingSolesAreHeldUnlessSwitchedOff) {
+  Clip clip(10, [](double) { return 0.0; });
+  clip.Start();
+  EXPECT_GE(clip.NumHeld(5), 8);
+  EXPECT_EQ(clip.Frame(5).Get<SurfaceContactTerm>().hold_weight, kHoldWeight);
+  clip.LetSlide();
+  clip.Start();
+  EXPECT_EQ(clip.NumHeld(5), 0);
+  EXPECT_GE(clip.NumTouching(5), 8);
 }
 
 /// A jump of 0.6 s rises by 44 cm: nothing pulls it down. The same height for as long without falling is no jump.
