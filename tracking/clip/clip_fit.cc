@@ -158,6 +158,7 @@ bool ClipFit::FindStart() {
   views_ = ObserveViews(input_, problem_.layout, options_);
   if (options_.ground.use_up) TurnViewsToVertical(input_, problem_.layout, &views_);
   problem_.shape_prior.mean = initial.betas;
+  for (LiftedFrame& frame : lifted_.frames) frame.limbs = {};  // they are half of it
   clock_.Record("initialise");
   if (!lifted_.frames.empty()) {
     lifted_landmarks_ = CompileLiftedLandmarks(*input_.body, problem_.layout.num_betas);
@@ -238,7 +239,7 @@ void ClipFit::FitCoarseFrames() {
   SequenceProblem coarse = SelectFrames(problem_, coarse_frames_);
   if (from_guess) FitNearStart(&coarse);
   FitCameraScale(&coarse);
-  if (has_points()) runner_->Run(stages_.coarse, &coarse);
+  if (has_points()) RunCoarse(stages_.coarse, &coarse);
   SettleFocalLength(&coarse);
   FitCameraScale(&coarse);
   LearnFromFirstAnswer(&coarse);
@@ -246,9 +247,40 @@ void ClipFit::FitCoarseFrames() {
   SpreadFrames(coarse, coarse_frames_, &problem_);
 }
 
+void ClipFit::RunCoarse(Stage stage, SequenceProblem* coarse) {
+  if (runner_->ok() && runner_->InWindows(*coarse)) {
+    Stage on_sample = stage;
+    on_sample.to = stage.from = std::midpoint(stage.from, stage.to);
+    SequenceSample sample(*coarse, kSampleFrames);
+    runner_->Run(on_sample, &sample.part);
+    TakeSample(sample, coarse);
+    stage.in_windows = true;
+  }
+  runner_->Run(stage, coarse);
+}
+
+void ClipFit::TakeSample(const SequenceSample& sample, SequenceProblem* coarse) const {
+  if (problem_.layout.focal_column >= 0) {
+    const double farther = std::exp(sample.part.log_focal - coarse->log_focal);
+    for (size_t i = 0; i < coarse->states.size(); ++i) MoveAlongRays(farther, i, coarse);
+  }
+  static_cast<SharedValues&>(*coarse) = sample.part;
+  for (size_t i = 0; i < sample.frames.size(); ++i) coarse->states[sample.frames[i]] = sample.part.states[i];
+}
+
+void ClipFit::MoveAlongRays(double farther, size_t i, SequenceProblem* problem) const {
+  const double pelvis_z = input_.body->RestJoints(problem->betas)(0, 2);
+  FrameState seen = StateInCamera(*problem, i);
+  seen.translation.z() = farther * (pelvis_z + seen.translation.z()) - pelvis_z;
+  const CameraPose* camera = problem->frames[i].camera_from_scene;
+  problem->states[i] = camera == nullptr
+                           ? std::move(seen)
+                           : StateInCamera(problem_.layout, Inverse(*camera), problem->betas, std::move(seen));
+}
+
 void ClipFit::FitNearStart(SequenceProblem* coarse) {
   if (lifted_.frames.empty()) WidenDenseKernels(stature_m_, coarse);
-  runner_->Run(stages_.near_start, coarse);
+  RunCoarse(stages_.near_start, coarse);
   for (FrameData& frame : coarse->frames) {
     if (auto* dense = frame.terms.Find<DenseTerm>(); dense != nullptr) dense->kernel = DenseTerm().kernel;
   }
@@ -261,7 +293,7 @@ void ClipFit::LearnFromFirstAnswer(SequenceProblem* coarse) {
   }
   bool learned = false;
   for (const auto& term : terms_) learned = term->LearnFrom(coarse_frames_, coarse, &problem_) || learned;
-  if (has_points() && (options_.fit_smoothness || learned || settled_focal_)) runner_->Run(stages_.again, coarse);
+  if (has_points() && (options_.fit_smoothness || learned || settled_focal_)) RunCoarse(stages_.again, coarse);
 }
 
 void ClipFit::FitCameraScale(SequenceProblem* coarse) {
@@ -326,19 +358,17 @@ void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
   constexpr double kHeldLogSigma = 1e-4;
   const bool joints_alone = !lifted_.frames.empty() && input_.dense == nullptr && problem_.views.empty();
   if (problem_.layout.focal_column < 0 || !joints_alone || !runner_->ok()) return;
-  const FocalFit fit{coarse->log_focal, FocalLogSigmaOf(*coarse, threads_)};
+  FocalFit fit{.log_px = coarse->log_focal};
+  if (runner_->InWindows(*coarse)) {
+    const SequenceSample sample(*coarse, kSampleFrames);
+    fit.log_sigma = std::sqrt(sample.share) * FocalLogSigmaOf(sample.part, threads_);
+  } else {
+    fit.log_sigma = FocalLogSigmaOf(*coarse, threads_);
+  }
   const FocalFit joined =
       JoinFocalFits({&fit, 1}, {.log_mean = problem_.log_focal_prior, .log_sigma = problem_.log_focal_sigma});
   const double farther = std::exp(joined.log_px - fit.log_px);
-  const double pelvis_z = input_.body->RestJoints(coarse->betas)(0, 2);
-  for (size_t i = 0; i < coarse->states.size(); ++i) {
-    FrameState seen = StateInCamera(*coarse, i);
-    seen.translation.z() = farther * (pelvis_z + seen.translation.z()) - pelvis_z;
-    const CameraPose* camera = coarse->frames[i].camera_from_scene;
-    coarse->states[i] = camera == nullptr
-                            ? std::move(seen)
-                            : StateInCamera(problem_.layout, Inverse(*camera), coarse->betas, std::move(seen));
-  }
+  for (size_t i = 0; i < coarse->states.size(); ++i) MoveAlongRays(farther, i, coarse);
   for (SequenceProblem* problem : {coarse, &problem_}) {
     problem->log_focal = problem->log_focal_prior = joined.log_px;
     problem->log_focal_sigma = kHeldLogSigma;
@@ -371,13 +401,20 @@ void ClipFit::FitRounds(SequenceProblem* coarse) {
     return;
   }
   const auto windows = WindowsOf(static_cast<int>(coarse->states.size()), kChainFramesAtOnce.window);
-  const double share = (to - from) / static_cast<double>(windows.size());
+  const double share = (to - from) / static_cast<double>(windows.size() + 1);
+  const auto in_clip = [&](std::vector<int> frames) {
+    for (int& t : frames) t = coarse_frames_[t];
+    return frames;
+  };
+  {
+    SequenceSample sample(*coarse, kSampleFrames);
+    RunRounds(shared, in_clip(sample.frames), from, from + share, {}, &sample.part);
+    TakeSample(sample, coarse);
+  }
   for (size_t w = 0; runner_->ok() && w < windows.size(); ++w) {
     SequenceWindow window(*coarse, windows[w].first, windows[w].second);
-    std::vector<int> frames;
-    for (const int i : window.frames) frames.push_back(coarse_frames_[i]);
-    const double begin = from + share * static_cast<double>(w);
-    RunRounds(shared, frames, begin, begin + share, window.held, &window.part);
+    const double begin = from + share * static_cast<double>(w + 1);
+    RunRounds(shared, in_clip(window.frames), begin, begin + share, window.held, &window.part);
     window.PutInto(coarse);
   }
 }
@@ -449,8 +486,11 @@ void ClipFit::FillJointSigma(Track* track) {
   SequenceProblem coarse = SelectFrames(problem_, coarse_frames_);
   const bool several = !problem_.views.empty();
   if (several) LeaveGround(&coarse);
-  const PositionSigma sigma = PositionSigmaOf(std::move(coarse), threads_, &summary_.focal_log_sigma);
-  SetViewSigma(problem_.layout, sigma.shared, &summary_);
+  double* const focal_log_sigma = &summary_.focal_log_sigma;
+  const PositionSigma sigma = runner_->InWindows(coarse)
+                                  ? PositionSigmaInWindows(coarse, kChainFramesAtOnce.window, threads_, focal_log_sigma)
+                                  : PositionSigmaOf(std::move(coarse), threads_, focal_log_sigma);
+  SetViewSigma(problem_.layout, sigma.shared.diagonal().cwiseSqrt(), &summary_);
   if (several && problem_.layout.focal_column >= 0) {
     summary_.focal_log_sigma = std::min(kViewSigmaFactor * summary_.focal_log_sigma, problem_.log_focal_sigma);
   }

@@ -17,6 +17,7 @@
 #include "tracking/problem/track_input.h"
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
+#include "tracking/solvers/solve_sequence.h"
 #include "tracking/terms/landmarks.h"
 
 namespace bodyloom {
@@ -49,6 +50,14 @@ class ClipFit {
   void StartFrom(const TrackStart& start);
   /// Transforms states and frames from the camera frames into the scene of a moving camera.
   void FollowCamera();
+  /// Solves a stage on the coarse frames: on those of a long clip in windows, after a sample of them has told shape and
+  /// focal length.
+  void RunCoarse(Stage stage, SequenceProblem* coarse);
+  /// Takes over what the sample's solve has found; the other frames move to where they are seen as large as before.
+  void TakeSample(const SequenceSample& sample, SequenceProblem* coarse) const;
+  /// Moves the person in frame i away from the camera as far as a focal length that is `farther` times as long asks
+  /// for.
+  void MoveAlongRays(double farther, size_t i, SequenceProblem* problem) const;
   void FitNearStart(SequenceProblem* coarse);
   /// Estimates smoothness and ground from a first solution; solves again when that changes something.
   void LearnFromFirstAnswer(SequenceProblem* coarse);

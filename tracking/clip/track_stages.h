@@ -24,12 +24,14 @@ struct Stage {
   bool in_windows = false;  ///< a long clip's frames are solved in windows (kChainFramesAtOnce)
 };
 /// A solve of some frames at once takes memory for each: chain some 100 KB and Ceres 310 KB (docs/lab/run_speed.md,
-/// "Memory"). Clips of more than `whole` frames are therefore solved in overlapping windows once the coarse frames have
-/// told shape and focal length.
+/// "Memory"). Clips of more than `whole` frames are therefore solved in overlapping windows once a sample of
+/// the coarse frames has told shape and focal length.
 struct FramesAtOnce {
   int whole, window;
 };
 inline constexpr FramesAtOnce kChainFramesAtOnce{2000, 1000}, kCeresFramesAtOnce{1000, 500};
+/// Number of a long clip's coarse frames that tell shape and focal length (SequenceSample).
+inline constexpr int kSampleFrames = 1000;
 
 /// Coarse in time first: neighbouring frames resolve the ambiguities of a single frame, and 15 frames a second are
 /// enough for human motion. All stages but the last solve the coarse frames.

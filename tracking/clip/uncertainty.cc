@@ -11,6 +11,7 @@
 #include "geometry/scene/camera_path.h"
 #include "tracking/problem/body_points.h"
 #include "tracking/solvers/chain/chain_inverse.h"
+#include "tracking/solvers/solve_sequence.h"
 
 namespace bodyloom {
 namespace {
@@ -46,6 +47,31 @@ RowMatrixXd JointDerivatives(const FrameLayout& layout, const FrameState& state,
     if (!shape_known) D.block(3 * j, n, 3, layout.num_betas) = kinematics.dp[j];
   }
   return D;
+}
+
+void LeaveOutLifter(SequenceProblem* problem) {
+  for (FrameData& frame : problem->frames) {
+    frame.Get<LiftedPoseTerm>().weight = 0;
+    for (ViewTerms& view : frame.views) view.terms.Get<LiftedPoseTerm>().weight = 0;
+  }
+}
+
+/// By the whole problem's normal equations, in the layout's columns from beta_column on; empty when they are singular.
+MatrixXd SharedCovarianceOf(const SequenceProblem& problem, int num_threads) {
+  MatrixXd covariance;
+  ChainProblem chain(problem, false, false, num_threads);
+  if (!std::isfinite(chain.Linearise(ChainPoint(problem.states, problem)))) return covariance;
+  ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
+  // Of the frame in which the elimination ends, so that no other's is computed on the way.
+  const int middle = static_cast<int>(problem.states.size()) / 2, s = chain.shared_size();
+  VisitCovariance(&chain, &factor, middle, middle + 1, 1,
+                  [&](int, const MatrixXd& P) { covariance = P.bottomRightCorner(s, s); });
+  return covariance;
+}
+
+double FocalLogSigmaOf(const FrameLayout& layout, const MatrixXd& shared) {
+  const int focal = layout.focal_column - layout.beta_column;
+  return std::sqrt(shared(focal, focal));
 }
 
 }  // namespace
@@ -92,22 +118,20 @@ double JointSpread::HipsSigma() const { return std::sqrt(hips.trace() / 3); }
 
 PositionSigma PositionSigma::Unknown(Eigen::Index num_frames, int num_joints) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  return {RowMatrixXd::Constant(num_frames, num_joints, kNaN), VectorXd::Constant(num_frames, kNaN), VectorXd()};
+  return {RowMatrixXd::Constant(num_frames, num_joints, kNaN), VectorXd::Constant(num_frames, kNaN), MatrixXd()};
 }
 
-PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma) {
+PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma,
+                              const MatrixXd* shared) {
   const auto T = static_cast<Eigen::Index>(problem.states.size());
   PositionSigma sigma = PositionSigma::Unknown(T, problem.layout.model->num_joints());
-  for (FrameData& frame : problem.frames) {
-    frame.Get<LiftedPoseTerm>().weight = 0;
-    for (ViewTerms& view : frame.views) view.terms.Get<LiftedPoseTerm>().weight = 0;
-  }
+  LeaveOutLifter(&problem);
   // More than chain supports: the covariance is computed without them, which overestimates it.
   if (NumFarRows(problem) > ChainProblem::kMaxFarRows) problem.couplings.clear();
   ChainProblem chain(problem, false, false, num_threads);
   if (!std::isfinite(chain.Linearise(ChainPoint(problem.states, problem)))) return sigma;
   ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
-  VisitCovariance(&chain, &factor, 0, static_cast<int>(T), num_threads, [&](int t, const MatrixXd& P) {
+  const auto visit = [&](int t, const MatrixXd& P) {
     const JointSpread spread = JointSpreadOf(problem.layout, problem.states[t], problem.betas, P);
     const FrameData& frame = problem.frames[t];
     const LiftedPose* lifted = frame.Get<LiftedPoseTerm>().pose;
@@ -116,26 +140,44 @@ PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* 
     sigma.joints.row(t) = (lifted == nullptr ? JointSigmaOf(spread) : JointSigmaOf(spread, *lifted, turn)).transpose();
     sigma.hips[t] = spread.HipsSigma();
     // The same in every frame's covariance.
-    if (t == 0) sigma.shared = P.diagonal().tail(problem.layout.num_columns - problem.layout.beta_column).cwiseSqrt();
+    const int s = problem.layout.num_columns - problem.layout.beta_column;
+    if (t == 0) sigma.shared = P.bottomRightCorner(s, s);
     if (t == 0 && focal_log_sigma != nullptr && problem.layout.focal_column >= 0) {
-      *focal_log_sigma = std::sqrt(P(problem.layout.focal_column, problem.layout.focal_column));
+      *focal_log_sigma = FocalLogSigmaOf(problem.layout, sigma.shared);
     }
-  });
+  };
+  VisitCovariance(&chain, &factor, 0, static_cast<int>(T), num_threads, visit, shared);
+  return sigma;
+}
+
+PositionSigma PositionSigmaInWindows(const SequenceProblem& problem, int window, int num_threads,
+                                     double* focal_log_sigma) {
+  const int T = static_cast<int>(problem.states.size());
+  PositionSigma sigma = PositionSigma::Unknown(T, problem.layout.model->num_joints());
+  {
+    SequenceSample sample(problem, window);
+    LeaveOutLifter(&sample.part);
+    sigma.shared = sample.share * SharedCovarianceOf(sample.part, num_threads);
+  }
+  if (sigma.shared.size() == 0) return sigma;
+  if (focal_log_sigma != nullptr && problem.layout.focal_column >= 0) {
+    *focal_log_sigma = FocalLogSigmaOf(problem.layout, sigma.shared);
+  }
+  int done = 0;
+  for (const auto& [begin, end] : WindowsOf(T, window)) {
+    SequenceWindow part(problem, begin, end);
+    const PositionSigma found = PositionSigmaOf(std::move(part.part), num_threads, nullptr, &sigma.shared);
+    const int to = end == T ? T : end - kWindowOverlap / 2, first = part.frames.front();
+    sigma.joints.middleRows(done, to - done) = found.joints.middleRows(done - first, to - done);
+    sigma.hips.segment(done, to - done) = found.hips.segment(done - first, to - done);
+    done = to;
+  }
   return sigma;
 }
 
 double FocalLogSigmaOf(const SequenceProblem& problem, int num_threads) {
-  double sigma = std::numeric_limits<double>::quiet_NaN();
-  if (problem.layout.focal_column < 0) return sigma;
-  ChainProblem chain(problem, false, false, num_threads);
-  if (!std::isfinite(chain.Linearise(ChainPoint(problem.states, problem)))) return sigma;
-  ChainFactor factor(chain.frame_size(), chain.arrow_size(), chain.cut_before(), chain.num_far_rows());
-  // Of the frame in which the elimination ends, so that no other's is computed on the way.
-  const int middle = static_cast<int>(problem.states.size()) / 2;
-  const int focal = problem.layout.focal_column;
-  VisitCovariance(&chain, &factor, middle, middle + 1, 1,
-                  [&](int, const MatrixXd& P) { sigma = std::sqrt(P(focal, focal)); });
-  return sigma;
+  const MatrixXd shared = problem.layout.focal_column < 0 ? MatrixXd() : SharedCovarianceOf(problem, num_threads);
+  return shared.size() == 0 ? std::numeric_limits<double>::quiet_NaN() : FocalLogSigmaOf(problem.layout, shared);
 }
 
 void AddFocalSpread(double log_sigma, Track* track) {

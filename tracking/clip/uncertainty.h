@@ -50,8 +50,8 @@ Eigen::VectorXd JointSigmaOf(const LiftedPose& lifted, int num_joints);
 struct PositionSigma {
   RowMatrixXd joints;    ///< T×J: σ_j, about the middle of the hips
   Eigen::VectorXd hips;  ///< T: JointSpread::HipsSigma(), for a person whose stature is as assumed
-  /// Of the unknowns that all frames share, in the layout's columns from beta_column on.
-  Eigen::VectorXd shared;
+  /// Covariance of the unknowns that all frames share, in the layout's columns from beta_column on.
+  Eigen::MatrixXd shared;
 
   /// NaN everywhere.
   static PositionSigma Unknown(Eigen::Index num_frames, int num_joints);
@@ -61,8 +61,16 @@ struct PositionSigma {
 /// the weights of the cost, so a limb that was not observed has the standard deviation of the prior. NaN where the
 /// system is singular. Linear in the number of frames; the same bytes for any number of threads. `focal_log_sigma`,
 /// unless null, is set to the standard deviation of the logarithm of the focal length; it is unchanged when the focal
-/// length is known or the system singular.
-PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma = nullptr);
+/// length is known or the system singular. `shared`: the covariance of the shared unknowns, of a problem of part
+/// of a clip; null: the problem tells it.
+PositionSigma PositionSigmaOf(SequenceProblem problem, int num_threads, double* focal_log_sigma = nullptr,
+                              const Eigen::MatrixXd* shared = nullptr);
+
+/// The same, with memory for `window` frames at once (WindowsOf()), more than kWindowOverlap: a SequenceSample of as
+/// many tells the covariance of the shared unknowns, and each frame's comes from the window to whose ends it is less
+/// near. Not for problems with couplings.
+PositionSigma PositionSigmaInWindows(const SequenceProblem& problem, int window, int num_threads,
+                                     double* focal_log_sigma = nullptr);
 
 /// Standard deviation of the logarithm of the focal length by the whole problem's normal equations, without the frames'
 /// covariances; NaN when it is known or the system singular.

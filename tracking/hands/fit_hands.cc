@@ -17,6 +17,7 @@
 #include "tracking/hands/put_parts.h"
 #include "tracking/hands/turn_head.h"
 #include "tracking/initialise/swap_repair.h"
+#include "tracking/solvers/solve_sequence.h"
 
 namespace bodyloom {
 namespace {
@@ -57,18 +58,6 @@ std::vector<HandWindow> HandWindowsOf(const std::vector<double>& times, const Ha
     windows.push_back(std::move(window));
   }
   return windows;
-}
-
-/// Flags of about `count` frames, in stretches of 50 that lie evenly over the clip.
-std::vector<char> StretchesOf(int num_frames, int count) {
-  constexpr int kStretch = 50;
-  std::vector<char> used(size_t(num_frames), 0);
-  const int stretches = std::max(1, count / kStretch);
-  for (int i = 0; i < stretches; ++i) {
-    const auto begin = static_cast<int>(int64_t{num_frames} * i / stretches);
-    std::fill(used.begin() + begin, used.begin() + std::min(num_frames, begin + kStretch), 1);
-  }
-  return used;
 }
 
 void PutHand(const BodyModel& body, const FittedHand& hand, const HandWindow& window, Track* track) {

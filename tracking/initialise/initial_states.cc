@@ -262,7 +262,7 @@ InitialStates FindInitialStates(const TrackSequenceInput& input, const KeypointS
       start.frames = LiftedFrames(input, *keypoints, layout, options);
       StartFromLifted(*keypoints, camera, model, result.betas, &start);
       if (!start.frames.empty()) {
-        result = start.initial;
+        result = std::move(start.initial);
         if (lifted != nullptr) *lifted = std::move(start);
         if (layout.knowledge == CameraKnowledge::kWeak) ToWeakPerspective(*keypoints, layout, &result.states);
         return result;

@@ -4,6 +4,8 @@
 #include <ceres/ceres.h>
 #include <omp.h>
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <numeric>
@@ -127,9 +129,13 @@ SolveReport SolveInWindows(const SolveOptions& options, const std::function<Solv
   return report;
 }
 
-/// The frames as a problem of their own; `frames` ascending. The shots of smoothness are counted from the first frame.
+/// The frames as a problem of their own, cut where they do not follow each other; `frames` ascending. The shots of
+/// smoothness are counted from the first frame.
 SequenceProblem PartOf(const SequenceProblem& problem, const std::vector<int>& frames) {
   SequenceProblem part = SelectFrames(problem, frames);
+  for (size_t i = 1; i < frames.size(); ++i) {
+    if (frames[i] != frames[i - 1] + 1) part.cut_before[i] = 1;
+  }
   if (problem.smoothness.size() > 1) {
     const std::vector<int> shots = ShotOfFrames(problem.cut_before);
     part.smoothness.clear();
@@ -158,6 +164,35 @@ std::vector<std::pair<int, int>> WindowsOf(int num_frames, int size) {
     windows.emplace_back(begin, std::min(num_frames, begin + size));
   }
   return windows;
+}
+
+std::vector<char> StretchesOf(int num_frames, int count) {
+  constexpr int kStretch = 50;
+  std::vector<char> used(size_t(num_frames), 0);
+  const int stretches = std::max(1, count / kStretch);
+  for (int i = 0; i < stretches; ++i) {
+    const auto begin = static_cast<int>(int64_t{num_frames} * i / stretches);
+    std::fill(used.begin() + begin, used.begin() + std::min(num_frames, begin + kStretch), 1);
+  }
+  return used;
+}
+
+SequenceSample::SequenceSample(const SequenceProblem& problem, int count) {
+  const std::vector<char> used = StretchesOf(static_cast<int>(problem.states.size()), count);
+  for (size_t t = 0; t < used.size(); ++t) {
+    if (used[t] != 0) frames.push_back(static_cast<int>(t));
+  }
+  share = static_cast<double>(frames.size()) / static_cast<double>(used.size());
+  part = PartOf(problem, frames);
+  const double wider = 1 / std::sqrt(share);
+  part.shape_prior.weight *= share;
+  part.shape_prior.height_sigma_m *= wider;
+  part.log_focal_sigma *= wider;
+  for (ViewLayout& view : part.layout.views) {
+    for (double* sigma : {&view.log_focal_sigma, &view.log_ratio_sigma, &view.offset_sigma_s, &view.rate_sigma}) {
+      *sigma *= wider;
+    }
+  }
 }
 
 SequenceWindow::SequenceWindow(const SequenceProblem& problem, int begin, int end) {

@@ -20,6 +20,20 @@ SolveReport SolveSequence(SequenceProblem* problem, const SolveOptions& options)
 inline constexpr int kWindowOverlap = 100;
 std::vector<std::pair<int, int>> WindowsOf(int num_frames, int size);
 
+/// Flags of about `count` of a clip's frames, in stretches of 50 that lie evenly over it.
+std::vector<char> StretchesOf(int num_frames, int count);
+
+/// Stretches of a clip as a problem of their own, to find the values that all frames share with the memory of a few.
+/// The shared priors have the frames' share of their weight, so the optimum is that of the whole clip where the
+/// stretches show what it shows, and a variance is the whole clip's divided by `share`.
+struct SequenceSample {
+  std::vector<int> frames;  ///< of the clip
+  double share = 1;         ///< of the clip's frames
+  SequenceProblem part;     ///< with a cut before each stretch
+
+  SequenceSample(const SequenceProblem& problem, int count);
+};
+
 /// The frames begin ≤ t < end as a problem of their own. The frames next to them that accelerations couple are in it,
 /// too, and are to be held (SolveOptions::held), so that there is no seam and a solve of the window lowers the cost of
 /// the whole.

@@ -77,8 +77,9 @@ class ChainFactor {
   ///   G_t = −U⁻¹Y − K₁ G_1 − K₂ G_2,   P_tt = C_tt + G_t P_ss G_tᵀ,   P_ts = G_t P_ss
   /// from the middle of a segment, where the elimination ended, outwards as far as requested: 7 n³ multiplications and
   /// additions a frame, constant memory. Source: Takahashi, Fagan, Chen 1973 (selected inverse).
-  void VisitInverse(int begin, int end, int num_threads,
-                    const std::function<void(int, const Eigen::MatrixXd&)>& visit) const;
+  /// `shared_inverse`: P_ss in place of this matrix's; null: this matrix's.
+  void VisitInverse(int begin, int end, int num_threads, const std::function<void(int, const Eigen::MatrixXd&)>& visit,
+                    const Eigen::MatrixXd* shared_inverse = nullptr) const;
 
   [[nodiscard]] int num_frames() const { return static_cast<int>(cut_before_.size()); }
   /// Sets another number of frames or other cuts; memory is kept.

@@ -40,7 +40,7 @@ class ChainFactor::Inverse {
     near_G_.swap(far_G_);
   }
   /// P of the near frame.
-  void Near(Eigen::MatrixXd* P) const;
+  void Near(const Eigen::MatrixXd& shared_inverse, Eigen::MatrixXd* P) const;
 
  private:
   using Square = std::vector<double>;
@@ -174,7 +174,7 @@ void ChainFactor::Inverse::Step(const std::vector<double>& rows, int neighbours)
   }
 }
 
-void ChainFactor::Inverse::Near(Eigen::MatrixXd* P) const {
+void ChainFactor::Inverse::Near(const Eigen::MatrixXd& shared_inverse, Eigen::MatrixXd* P) const {
   using Rows = Eigen::Map<const RowMatrixXd, 0, Eigen::OuterStride<>>;
   const int s = f_.s_;
   const Rows C(near_.data(), n_, n_, Eigen::OuterStride<>(stride_));
@@ -182,18 +182,22 @@ void ChainFactor::Inverse::Near(Eigen::MatrixXd* P) const {
   P->resize(n_ + s, n_ + s);
   P->topLeftCorner(n_, n_) = C;
   if (s == 0) return;
-  P->topRightCorner(n_, s).noalias() = G * f_.shared_inverse_;
+  P->topRightCorner(n_, s).noalias() = G * shared_inverse;
   P->topLeftCorner(n_, n_).noalias() += P->topRightCorner(n_, s) * G.transpose();
   P->bottomLeftCorner(s, n_) = P->topRightCorner(n_, s).transpose();
-  P->bottomRightCorner(s, s) = f_.shared_inverse_;
+  P->bottomRightCorner(s, s) = shared_inverse;
 }
 
 std::shared_ptr<ChainFactor::InversePool> ChainFactor::MakeInversePool() { return std::make_shared<InversePool>(); }
 
 void ChainFactor::VisitInverse(int begin, int end, int num_threads,
-                               const std::function<void(int, const Eigen::MatrixXd&)>& visit) const {
+                               const std::function<void(int, const Eigen::MatrixXd&)>& visit,
+                               const Eigen::MatrixXd* shared_inverse) const {
   BODYLOOM_CHECK(begin >= 0 && end <= num_frames(), "chain: the inverse of frames ", begin, " to ", end, " of ",
                  num_frames());
+  const Eigen::MatrixXd& of_shared = shared_inverse == nullptr ? shared_inverse_ : *shared_inverse;
+  BODYLOOM_CHECK(of_shared.rows() == s_ && of_shared.cols() == s_, "chain: the inverse of ", of_shared.rows(), " x ",
+                 of_shared.cols(), " shared values, expected ", s_);
   const std::vector<Segment> segments = Segments();
   ParallelFor(2 * static_cast<int>(segments.size()), num_threads, [&](int i) {
     const Segment& segment = segments[i / 2];
@@ -207,7 +211,7 @@ void ChainFactor::VisitInverse(int begin, int end, int num_threads,
     Eigen::MatrixXd P;
     const auto hand_over = [&](int t) {
       if (t < from || t >= to) return;
-      inverse.Near(&P);
+      inverse.Near(of_shared, &P);
       visit(t, P);
     };
     if (m + 1 < segment.end) {
@@ -228,7 +232,10 @@ void ChainFactor::VisitInverse(int begin, int end, int num_threads,
 }
 
 bool VisitCovariance(ChainProblem* chain, ChainFactor* factor, int begin, int end, int num_threads,
-                     const std::function<void(int, const Eigen::MatrixXd&)>& visit) {
+                     const std::function<void(int, const Eigen::MatrixXd&)>& visit,
+                     const Eigen::MatrixXd* shared_covariance) {
+  BODYLOOM_CHECK(shared_covariance == nullptr || chain->num_far_rows() == 0,
+                 "chain: a covariance of the shared values beside cost functions on several frames");
   constexpr double kNothing = 1e-6;
   const Eigen::VectorXd hold = Eigen::VectorXd::Constant(chain->gradient().size(), kNothing);
   chain->SetDamping(&hold);
@@ -238,7 +245,7 @@ bool VisitCovariance(ChainProblem* chain, ChainFactor* factor, int begin, int en
       factor->Solve(*chain, arrow, Eigen::VectorXd::Zero(chain->arrow_size()), num_threads, &step, &shared_step);
   const int size = chain->frame_size() + chain->shared_size();
   if (solved && chain->num_far_rows() == 0) {
-    factor->VisitInverse(begin, end, num_threads, visit);
+    factor->VisitInverse(begin, end, num_threads, visit, shared_covariance);
   } else if (solved) {  // without multipliers
     factor->VisitInverse(begin, end, num_threads,
                          [&](int t, const Eigen::MatrixXd& P) { visit(t, P.topLeftCorner(size, size)); });

@@ -22,26 +22,30 @@ LiftedPose MakeLiftedPose(const LiftedFrame& frame, const LiftedLandmarks& landm
                           double min_sigma_m) {
   LiftedPose pose;
   pose.landmarks = &landmarks;
-  const Eigen::Matrix3d& R = frame.camera_from_virtual;
+  pose.axes = frame.camera_from_virtual;
   for (int k = 0; k < kLifterPoints; ++k) {
     if (!landmarks.known[k]) continue;
-    const double across = 1 / std::max(min_sigma_m, metres * frame.sigma(k, 0));
-    const double along = 1 / std::max(min_sigma_m, metres * frame.sigma(k, 1));
     LiftedPose::Point& point = pose.points.emplace_back();
     point.landmark = k;
     point.offset = metres * frame.points.row(k).transpose();
-    point.whitening = R * Eigen::Vector3d(across, across, along).asDiagonal() * R.transpose();
-    const Eigen::Vector2d variance = 4 * metres * metres * frame.sigma.row(k).transpose().cwiseAbs2();
-    point.covariance = R * Eigen::Vector3d(variance[0], variance[0], variance[1]).asDiagonal() * R.transpose();
+    for (int i = 0; i < 2; ++i) point.inverse_sigma[i] = 1 / std::max(min_sigma_m, metres * frame.sigma(k, i));
+    point.variance = 4 * metres * metres * frame.sigma.row(k).transpose().cwiseAbs2();
   }
   return pose;
+}
+
+Eigen::Matrix3d LiftedPose::Turned(const Eigen::Vector2d& across_and_along) const {
+  const double x = across_and_along[0], z = across_and_along[1];
+  Eigen::Matrix3d turned;  // not constructed from the product, which adds in another order
+  turned = axes * Vector3d(x, x, z).asDiagonal() * axes.transpose();
+  return turned;
 }
 
 Eigen::Matrix3d LiftedPose::JointCovariance(int joint) const {
   const LiftedLandmarks::Nearest& nearest = landmarks->of_joint[joint];
   const auto point = std::lower_bound(points.begin(), points.end(), nearest.landmark,
                                       [](const Point& p, int landmark) { return p.landmark < landmark; });
-  return nearest.share * nearest.share * point->covariance;
+  return nearest.share * nearest.share * Turned(point->variance);
 }
 
 namespace {
@@ -77,14 +81,15 @@ void LiftedPoseTerm::Add(FrameAccumulator* sums) const {
   }
   for (const LiftedPose::Point& point : pose->points) {
     const Vector3d x = points.Evaluate(kinematics, landmarks.points[point.landmark], derivatives);
-    const Vector3d residual = point.whitening * (x - hips - point.offset);
+    const Eigen::Matrix3d whitening = pose->Whitening(point);
+    const Vector3d residual = whitening * (x - hips - point.offset);
     const double scale = sums->AddGroup(3, residual.squaredNorm(), kernel, weight);
     if (!derivatives) continue;
     sums->FillPointRows(sums->NextRows(3));
     sums->DependsOnPoint();
     for (const int block : hip_blocks) sums->DependsOn(block);
     const RowMatrixXd difference = sums->NextRows(3) - hip_rows;
-    sums->NextRows(3).noalias() = scale * point.whitening * difference;
+    sums->NextRows(3).noalias() = scale * whitening * difference;
     sums->NextResiduals(3) = scale * residual;
     sums->TakeRows(3);
   }

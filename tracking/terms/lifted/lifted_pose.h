@@ -26,17 +26,23 @@ struct TrackSequenceOptions;
 struct LiftedPose {
   struct Point {
     int landmark = 0;
-    Eigen::Vector3d offset;     ///< from the mid-hip, camera axes, metres
-    Eigen::Matrix3d whitening;  ///< 1/m
-    /// m²: of the lifter's density, R diag(4 σ_xy², 4 σ_xy², 4 σ_z²) Rᵀ (lifter_reading.h)
-    Eigen::Matrix3d covariance;
+    Eigen::Vector3d offset;         ///< from the mid-hip, camera axes, metres
+    Eigen::Vector2d inverse_sigma;  ///< 1/m: across and along the view
+    Eigen::Vector2d variance;       ///< m²: of the lifter's density, 4 σ_xy² and 4 σ_z² (lifter_reading.h)
   };
   const LiftedLandmarks* landmarks = nullptr;
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< R
   std::vector<Point> points;  ///< in the order of the landmarks, those that the body lacks left out
 
+  /// W_k, 1/m.
+  [[nodiscard]] Eigen::Matrix3d Whitening(const Point& point) const { return Turned(point.inverse_sigma); }
   /// m²: of a body joint's position about the middle of the hips, by the landmark nearest to it
   /// (LiftedLandmarks::Nearest): share² times that landmark's covariance.
   [[nodiscard]] Eigen::Matrix3d JointCovariance(int joint) const;
+
+ private:
+  /// R diag(x, x, z) Rᵀ. Matrices of every point of every frame would be three quarters of the memory.
+  [[nodiscard]] Eigen::Matrix3d Turned(const Eigen::Vector2d& across_and_along) const;
 };
 
 /// `metres` is the body's torso + leg length, `min_sigma_m` a floor of both scales: the body's landmarks are not the

@@ -70,7 +70,7 @@ void CheckAgainstTwin(const Scene& scene) {
     for (int i = 0; i < n; ++i) {
       const LiftedPose::Point& point = scene.lifted.points[i];
       const twin::Vector3<Jet> d = landmark_at(point.landmark) - hips - point.offset.cast<Jet>();
-      const twin::Vector3<Jet> whitened = point.whitening.cast<Jet>() * d;
+      const twin::Vector3<Jet> whitened = scene.lifted.Whitening(point).cast<Jet>() * d;
       Vector3d value, slope;
       for (int c = 0; c < 3; ++c) {
         value[c] = whitened[c].a;
@@ -124,8 +124,8 @@ TEST(LiftedPose, SigmaIsFlooredAndTurnsWithTheView) {
   const LiftedPose pose = MakeLiftedPose(frame, landmarks, 1.5, 0.03);
   ASSERT_EQ(pose.points.size(), size_t{kLifterPoints});
   const Eigen::Vector3d along = frame.camera_from_virtual.col(2), across = frame.camera_from_virtual.col(0);
-  EXPECT_NEAR((pose.points[4].whitening * along).norm(), 1 / (1.5 * 0.2), 1e-12);
-  EXPECT_NEAR((pose.points[4].whitening * across).norm(), 1 / 0.03, 1e-9);
+  EXPECT_NEAR((pose.Whitening(pose.points[4]) * along).norm(), 1 / (1.5 * 0.2), 1e-12);
+  EXPECT_NEAR((pose.Whitening(pose.points[4]) * across).norm(), 1 / 0.03, 1e-9);
 }
 
 }  // namespace
