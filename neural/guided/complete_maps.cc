@@ -12,12 +12,12 @@ namespace {
 
 constexpr int kEnoughPixels = 8;  ///< minimum of hair pixels for its colour
 
-struct PixelBox {
+struct BodyPixels {
   int left = 0, top = 0, right = -1, bottom = -1;  ///< last pixels included
 };
 
-PixelBox BodyBox(const PhotoFrame& frame) {
-  PixelBox box{frame.size, frame.size, -1, -1};
+BodyPixels BodyBox(const PhotoFrame& frame) {
+  BodyPixels box{frame.size, frame.size, -1, -1};
   for (int y = 0; y < frame.size; ++y) {
     for (int x = 0; x < frame.size; ++x) {
       if (frame.parts[size_t(y) * frame.size + x] == 0) continue;
@@ -89,7 +89,7 @@ std::vector<uint8_t> TexelsOfTheBack(const PhotoFrame& front, const PhotoFrame& 
 
 PseudoImage MirroredFront(const PhotoFrame& front, const RenderedPerson& rendered, const PhotoFrame& back,
                           const CoherentMaps& maps) {
-  const PixelBox from = BodyBox(back), to = BodyBox(front);
+  const BodyPixels from = BodyBox(back), to = BodyBox(front);
   const size_t pixels = size_t(back.size) * back.size;
   PseudoImage pseudo{
       back.size, std::vector<float>(3 * pixels), std::vector<uint8_t>(pixels), std::vector<uint8_t>(pixels), {}, {}};
