@@ -64,6 +64,9 @@ Camera StartCamera(const TrackSequenceInput& input, const TrackSequenceOptions& 
 /// σ of adults' stature, metres: of a person whose size cameras at known places measure.
 constexpr double kStatureSpreadM = 0.1;
 
+/// Frames of a long clip whose uncertainty is computed at once, when everything else of the clip is there, too.
+constexpr int kSigmaFramesAtOnce = 500;
+
 /// Above the floor, of the lifter's points of a foot that stands flat, metres.
 constexpr double kToeHeight = 0.012, kHeelHeight = 0.027;
 
@@ -488,7 +491,7 @@ void ClipFit::FillJointSigma(Track* track) {
   if (several) LeaveGround(&coarse);
   double* const focal_log_sigma = &summary_.focal_log_sigma;
   const PositionSigma sigma = runner_->InWindows(coarse)
-                                  ? PositionSigmaInWindows(coarse, kChainFramesAtOnce.window, threads_, focal_log_sigma)
+                                  ? PositionSigmaInWindows(coarse, kSigmaFramesAtOnce, threads_, focal_log_sigma)
                                   : PositionSigmaOf(std::move(coarse), threads_, focal_log_sigma);
   SetViewSigma(problem_.layout, sigma.shared.diagonal().cwiseSqrt(), &summary_);
   if (several && problem_.layout.focal_column >= 0) {
