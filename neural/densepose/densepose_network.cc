@@ -16,11 +16,11 @@
 #include "neural/densepose/vision_operators.h"
 
 namespace bodyloom {
-namespace {
 
-// Converts both forms of DensePose's output to one set of checked tensors.
-
+/// Forms of DensePose's output, both of which are converted to one set of checked tensors.
 enum class DensePoseForm { kTuple, kDict };
+
+namespace {
 
 /// Output for n people; floats in C order on the CPU.
 struct DensePoseOutput {

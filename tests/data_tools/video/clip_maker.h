@@ -13,6 +13,7 @@
 #include "data_tools/formats/atomic_file.h"
 #include "data_tools/video/image_file.h"
 #include "data_tools/video/video_reader.h"
+#include "geometry/base/check.h"
 #include "tests/data_tools/formats/temporary_file.h"
 
 namespace bodyloom {
@@ -53,7 +54,7 @@ inline void Ffmpeg(const std::string& arguments) {
 inline std::string NumberedInput(const TemporaryFolder& folder, int frames, const std::string& rate = "30",
                                  int width = 96, int height = 64) {
   for (int i = 0; i < frames; ++i) {
-    WriteImage(folder.File("n" + std::to_string(1000 + i) + ".png"), NumberedImage(i, width, height));
+    WriteImage(folder.File(Concatenate("n", 1000 + i, ".png")), NumberedImage(i, width, height));
   }
   return "-framerate " + rate + " -start_number 1000 -i " + folder.File("n%d.png") + " ";
 }
