@@ -30,10 +30,10 @@ MOTIONS = ("amp_cmu/amp_humanoid_hop.npy", "cmu_asfamc/01_01.amc.gz", "cmu_asfam
 NO_JUMPS = ("cmu_bvh/02_01.bvh", "cmu_bvh_dance/104_zombie.bvh.gz", "cmu_bvh_dance/93_charleston1.bvh.gz")
 G, ELEVATION_DEG, CLEAR_M = 9.81, 8, 0.06
 # Segments of geometry/body/centre_of_mass.h by SMPL's joints: from (two, their middle), to, share, along.
-SEGMENTS = [((16, 17), (1, 2), 0.430, 0.4486), ((12, 12), (15, 15), 0.068, 1.2)] + [
+SEGMENTS = [((16, 17), (1, 2), 0.4302, 0.405), ((12, 12), (15, 15), 0.0681, 1.2)] + [
     ((a + side, a + side), (b + side, b + side), share, along) for side in (0, 1)
-    for a, b, share, along in ((16, 18, 0.0263, 0.575), (18, 20, 0.0150, 0.457), (18, 20, 0.0059, 1.24),
-                               (1, 4, 0.1447, 0.385), (4, 7, 0.0457, 0.443), (7, 10, 0.0133, 0.4))]
+    for a, b, share, along in ((16, 18, 0.0263, 0.576), (18, 20, 0.0150, 0.457), (18, 20, 0.00585, 1.24),
+                               (1, 4, 0.1447, 0.385), (4, 7, 0.0457, 0.437), (7, 10, 0.0133, 0.4))]
 
 
 def limbs_m(joints):

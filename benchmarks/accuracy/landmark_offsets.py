@@ -45,15 +45,17 @@ def frames(detections, track):
         if points is None or not np.isfinite(points).all():
             continue
         turns = orientations(track["poses"][frame][:72].reshape(24, 3))
-        derivative = np.zeros((17, 2, 3))
+        by_offset = np.zeros((17, 2, 3))
         for i, (name, point) in enumerate(zip(COCO, points)):
             side, _, kind = name.rpartition("_")
             turn = turns[JOINTS[kind][SIDES.index(side)] if side else 15]
             if side == "right":
                 turn = turn @ np.diag([-1.0, 1, 1])
-            derivative[i] = camera[0, 0] / point[2] * np.hstack([np.eye(2), -point[:2, None] / point[2]]) @ turn
+            by_place = np.hstack([np.eye(2), -point[:2, None] / point[2]])
+            by_offset[i] = camera[0, 0] / point[2] * by_place @ turn
         projected = points @ camera.T
-        yield row, columns, detections["people_keypoints"][row][columns], projected[:, :2] / projected[:, 2:], derivative
+        found = detections["people_keypoints"][row][columns]
+        yield row, columns, found, projected[:, :2] / projected[:, 2:], by_offset
 
 
 def fit(derivatives, residuals):

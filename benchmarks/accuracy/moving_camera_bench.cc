@@ -197,7 +197,7 @@ struct FoundPath {
   double within_1 = kNotMeasured, within_2 = kNotMeasured;  ///< shares of the header
 };
 
-/// Of the header.
+/// Column roll_mps of the header, m/s.
 double RollSpeed(const SynthClip& clip) {
   const std::vector<CameraPose>& path = clip.truth.camera_from_scene;
   const std::vector<std::string> names = {"left_ankle",    "right_ankle", "left_big_toe",
@@ -222,6 +222,7 @@ double RollSpeed(const SynthClip& clip) {
   return way > 0 ? along / way : kNotMeasured;
 }
 
+/// Fills within_1 and within_2.
 void MeasureCoverage(const CameraMotion& motion, const std::vector<CameraPose>& truth, FoundPath* found) {
   std::vector<CameraPose> true_poses;
   for (const double t : motion.path.timestamps)

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cost and benefit of each part of the tracker: `bodyloom track` on AIST++'s clips without one part at a time.
 
-usage: tracker_parts.py --bodyloom build/release/apps/bodyloom --data AISTPP [--views c01 …] [--rows NAME …] [--repeat 3]
+usage: tracker_parts.py --bodyloom build/release/apps/bodyloom --data AISTPP [--views c01 …] [--rows NAME …]
+                        [--repeat 3]
                         [--threads 2]
   --data: a folder with keypoints2d/, keypoints3d/, motions/ and cameras/
   --rows: only these, and everything

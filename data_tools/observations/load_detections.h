@@ -19,14 +19,15 @@
 namespace bodyloom {
 
 struct LoadDetectionsOptions {
-  std::string view;     ///< camera of a file that has several ("c01"), sub-folder of a folder that has several
-  int person = 0;       ///< index among several people: 0 is the largest and longest in view (people.h)
-  double fps = 0;       ///< frame rate of files without one; 0: 30, or 60 for AIST++
-  int image_width = 0;  ///< when known; checked against the detections, and needed for normalised coordinates
+  std::string view = {};  ///< camera of a file that has several ("c01"), sub-folder of a folder that has several
+  int person = 0;         ///< index among several people: 0 is the largest and longest in view (people.h)
+  double fps = 0;         ///< frame rate of files without one; 0: 30, or 60 for AIST++
+  int image_width = 0;    ///< when known; checked against the detections, and needed for normalised coordinates
   int image_height = 0;
   int other_width = 0, other_height = 0;  ///< another size that detections may state, and then keep; 0: none
   double min_confidence = 0;              ///< landmarks below this count as missing
-  std::string convention;  ///< order of landmarks of OpenPose, bare arrays, VideoPose3D; empty: detected by each reader
+  /// Order of landmarks of OpenPose, bare arrays, VideoPose3D; empty: detected by each reader.
+  std::string convention = {};
 };
 
 /// A person's landmarks, and the hands and face in the same frames where the file has any: OpenPose, COCO-WholeBody and

@@ -2,7 +2,6 @@
 // Memory of `bodyloom track` against the clip's length.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>

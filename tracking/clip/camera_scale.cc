@@ -315,7 +315,7 @@ CameraScale ScaleByPlace(std::span<const Vector3d> places_m, std::span<const dou
   result.scale_m = s;
   result.sigma_m = std::sqrt((squares / count + kPlaceMps * kPlaceMps) / (independent * normal.H / count));
   result.found = s > 0 && result.sigma_m <= CameraScaleOptions().max_relative_sigma * s;
-  if (result.found) result.why = "the person stays in one place, the camera goes round";
+  if (result.found) result.why = "the person is taken to stay in one place";
   return result;
 }
 

@@ -24,8 +24,7 @@
 /// keeps its direction:
 ///   σ_log = 0.05 ‖mean c'‖ / (s mean ‖c'‖²)     c': the camera's velocity at scale 1; part of the result's σ
 ///
-/// A camera that goes round somebody who stays in one place has its scale from that place (ScaleByPlace), for clips in
-/// which neither feet nor floor (floor_scale.h) tell it.
+/// If neither feet nor floor (floor_scale.h) tell the scale, the person is taken to stay in one place (ScaleByPlace()).
 #pragma once
 
 #include <Eigen/Core>
@@ -50,7 +49,7 @@ struct CameraScaleOptions {
   double min_contact = 0.35;
   double across_m = 0.03, along_m = 0.12;  ///< σ of an ankle's position across the view and along it
   double min_run_s = 0.1;                  ///< shorter runs do not count
-  double max_relative_sigma = 0.35;        ///< a scale with a larger σ is rejected
+  double max_relative_sigma = 0.35;        ///< a scale with a larger σ, without that of rolling feet, is rejected
   double sure_relative_sigma = 0.05;       ///< of runs of standing feet: the scale is theirs
   double step_s = 0.2;                     ///< between the frames over which one of the feet stands
   double correlation_s = 0.3;              ///< errors of frames nearer than that are correlated
@@ -68,6 +67,7 @@ CameraScale EstimateCameraScale(std::span<const std::vector<std::array<FootPlace
 ///   min_s Σ_f ‖v_f(s)‖²     v_f: velocity of y over half a second
 /// σ² = (mean ‖v_f‖² + (0.25 m/s)²) / (n mean ‖c'‖²), n: seconds of the clip, because velocities of people last for a
 /// second. A camera that goes along with somebody who walks has s near 0 and a large σ; above σ/s = 0.35 none is found.
+/// Not told from somebody who stays: who walks steadily against the camera's way, and is out of its view soon.
 /// `places_m`: one a frame, of the pelvis; the other numbers as above (checked).
 CameraScale ScaleByPlace(std::span<const Eigen::Vector3d> places_m, std::span<const double> timestamps,
                          const std::vector<char>& cut_before, std::span<const CameraPose> unit_path);

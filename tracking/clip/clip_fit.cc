@@ -254,6 +254,7 @@ void ClipFit::RunCoarse(Stage stage, SequenceProblem* coarse) {
   if (runner_->ok() && runner_->InWindows(*coarse)) {
     Stage on_sample = stage;
     on_sample.to = stage.from = std::midpoint(stage.from, stage.to);
+    on_sample.of_sample = true;
     SequenceSample sample(*coarse, kSampleFrames);
     runner_->Run(on_sample, &sample.part);
     TakeSample(sample, coarse);
@@ -265,16 +266,16 @@ void ClipFit::RunCoarse(Stage stage, SequenceProblem* coarse) {
 void ClipFit::TakeSample(const SequenceSample& sample, SequenceProblem* coarse) const {
   if (problem_.layout.focal_column >= 0) {
     const double farther = std::exp(sample.part.log_focal - coarse->log_focal);
-    for (size_t i = 0; i < coarse->states.size(); ++i) MoveAlongRays(farther, i, coarse);
+    for (size_t i = 0; i < coarse->states.size(); ++i) ScaleDepth(farther, i, coarse);
   }
   static_cast<SharedValues&>(*coarse) = sample.part;
   for (size_t i = 0; i < sample.frames.size(); ++i) coarse->states[sample.frames[i]] = sample.part.states[i];
 }
 
-void ClipFit::MoveAlongRays(double farther, size_t i, SequenceProblem* problem) const {
+void ClipFit::ScaleDepth(double factor, size_t i, SequenceProblem* problem) const {
   const double pelvis_z = input_.body->RestJoints(problem->betas)(0, 2);
   FrameState seen = StateInCamera(*problem, i);
-  seen.translation.z() = farther * (pelvis_z + seen.translation.z()) - pelvis_z;
+  seen.translation.z() = factor * (pelvis_z + seen.translation.z()) - pelvis_z;
   const CameraPose* camera = problem->frames[i].camera_from_scene;
   problem->states[i] = camera == nullptr
                            ? std::move(seen)
@@ -371,7 +372,7 @@ void ClipFit::SettleFocalLength(SequenceProblem* coarse) {
   const FocalFit joined =
       JoinFocalFits({&fit, 1}, {.log_mean = problem_.log_focal_prior, .log_sigma = problem_.log_focal_sigma});
   const double farther = std::exp(joined.log_px - fit.log_px);
-  for (size_t i = 0; i < coarse->states.size(); ++i) MoveAlongRays(farther, i, coarse);
+  for (size_t i = 0; i < coarse->states.size(); ++i) ScaleDepth(farther, i, coarse);
   for (SequenceProblem* problem : {coarse, &problem_}) {
     problem->log_focal = problem->log_focal_prior = joined.log_px;
     problem->log_focal_sigma = kHeldLogSigma;
@@ -470,7 +471,7 @@ void ClipFit::Finish(TrackSequenceResult* result) {
   SummariseImageTerms(problem_, residuals, &summary_);
   for (const auto& term : terms_) term->Summarise(problem_, &summary_);
   result->track.world = WorldOfGround(summary_.ground, result->track.joints);
-  summary_.flights = StatureFromFlights(problem_, result->track, stature_m_, threads_);
+  summary_.flights = StatureFromFlights(problem_, result->track, threads_);
   clock_.Record("finish");
   summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
   if (options_.estimate_uncertainty) {

@@ -55,9 +55,8 @@ class ClipFit {
   void RunCoarse(Stage stage, SequenceProblem* coarse);
   /// Takes over what the sample's solve has found; the other frames move to where they are seen as large as before.
   void TakeSample(const SequenceSample& sample, SequenceProblem* coarse) const;
-  /// Moves the person in frame i away from the camera as far as a focal length that is `farther` times as long asks
-  /// for.
-  void MoveAlongRays(double farther, size_t i, SequenceProblem* problem) const;
+  /// Multiplies the pelvis' depth in frame i. The size in the image stays when the focal length grows by `factor`.
+  void ScaleDepth(double factor, size_t i, SequenceProblem* problem) const;
   void FitNearStart(SequenceProblem* coarse);
   /// Estimates smoothness and ground from a first solution; solves again when that changes something.
   void LearnFromFirstAnswer(SequenceProblem* coarse);

@@ -74,7 +74,7 @@ bool StageRunner::Run(const Stage& stage, SequenceSolver solver, SequenceProblem
   summary_->iterations += report.iterations;
   summary_->seconds_evaluation += report.seconds_evaluation;
   summary_->seconds_linear_solver += report.seconds_linear_solver;
-  if (summary_->initial_cost == 0) summary_->initial_cost = report.initial_cost;
+  if (summary_->initial_cost == 0 && !stage.of_sample) summary_->initial_cost = report.initial_cost;
   summary_->final_cost = report.final_cost;
   summary_->status = report.status;
   summary_->message = report.message;

@@ -22,6 +22,7 @@ struct Stage {
   int max_iterations;
   double from, to;          ///< of the whole run, for progress
   bool in_windows = false;  ///< a long clip's frames are solved in windows (kChainFramesAtOnce)
+  bool of_sample = false;   ///< of some of a long clip's frames, whose cost is not that of the clip
 };
 /// A solve of some frames at once takes memory for each: chain some 100 KB and Ceres 310 KB (docs/lab/run_speed.md,
 /// "Memory"). Clips of more than `whole` frames are therefore solved in overlapping windows once a sample of

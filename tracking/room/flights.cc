@@ -121,8 +121,11 @@ FlightSummary StatureFromFlights(std::span<const FlightFrame> frames, std::span<
   return summary;
 }
 
-FlightSummary StatureFromFlights(const SequenceProblem& problem, const Track& track, double assumed_stature_m,
-                                 int num_threads) {
+FlightSummary StatureFromFlights(const SequenceProblem& problem, const Track& track, int num_threads) {
+  Eigen::VectorXd by_beta;
+  const auto num_betas = static_cast<int>(problem.betas.size());
+  const double at_mean_m = StatureOfMeanShape(*problem.layout.model, num_betas, &by_beta);
+  const double assumed_stature_m = at_mean_m + by_beta.dot(problem.betas);
   const auto none = [&](const char* why) {
     FlightSummary summary;
     summary.assumed_m = assumed_stature_m;

@@ -5,15 +5,15 @@
 /// with a, in metres of that size, the person is H = s H₀ tall, and s times as far away, with s = g / a. Each flight
 /// gives
 ///   log s_k = log(g / a_k),   σ_k² = kFlightSigma² + (8 δ / (g L_k²))²
-/// L_k: its length; 8 δ / L²: error of a when errors of δ = kCentreSigmaM bend the path over it; kFlightSigma: what the
-/// pose in flight is off. Their robust mean (Geman–McClure, c = kFlightKernel, started at the median) has the variance
-/// 1/Σ w_k + kCommonSigma², times χ² per flight where that is above 1; kCommonSigma: errors that all flights of a clip
+/// L_k: its length without the ends; 8 δ / L²: error of a when errors of δ = kCentreSigmaM bend the path over it;
+/// kFlightSigma: what the pose in flight is off. Their robust mean (Geman–McClure, c = kFlightKernel, started at the
+/// median) has the variance max(1, χ²/(n − 1)) / Σ w_k + kCommonSigma²; kCommonSigma: errors that all flights of a clip
 /// share. The figures are of AIST++ and synthetic jumps (docs/lab/world.md).
 ///
 /// A flight is a stretch of frames of one shot, all tracked, whose lowest point is more than kClearM above the ground,
 /// between two frames where it is not. Its parabola is fitted by least squares without kFlightEnds of it at either end,
-/// where heights of the ground matter. It counts if it lasts kMinFlight_s without the ends, and kMaxFlight_s at most
-/// with them, if
+/// where heights of the ground matter. It counts if it has kMinFlight_s and five frames without the ends, and
+/// kMaxFlight_s at most with them, if
 ///   the trunk is within kMaxTrunkLean of upright (the centre of mass of a rolled up body is less known),
 ///   the lowest point has not sunk below the ground by kSunkM in the second before or after (a trampoline),
 ///   and kMinFlightScale ≤ s ≤ kMaxFlightScale. Whatever else holds a body up, a rope, a partner, a ground at a wrong
@@ -49,8 +49,8 @@ struct FlightFrame {
 FlightSummary StatureFromFlights(std::span<const FlightFrame> frames, std::span<const double> timestamps,
                                  const std::vector<char>& cut_before, double assumed_stature_m);
 
-/// The same of a solution and its track. Not of a camera that moves, nor of several: their places tell the size.
-FlightSummary StatureFromFlights(const SequenceProblem& problem, const Track& track, double assumed_stature_m,
-                                 int num_threads);
+/// The same of a solution and its track, with the stature of its body as the assumed one. Not of a camera that moves,
+/// nor of several: their places tell the size.
+FlightSummary StatureFromFlights(const SequenceProblem& problem, const Track& track, int num_threads);
 
 }  // namespace bodyloom

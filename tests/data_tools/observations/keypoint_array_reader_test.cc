@@ -61,7 +61,9 @@ void ExpectStick(const KeypointSequence& sequence, double x, float confidence) {
     EXPECT_NEAR(sequence.at(2, k).x, px, 1e-3) << name;
     EXPECT_NEAR(sequence.at(2, k).y, py, 1e-3) << name;
     EXPECT_EQ(sequence.at(2, k).confidence, confidence);
-    if (name == "nose") EXPECT_EQ(sequence.at(1, k).confidence, 0);
+    if (name == "nose") {
+      EXPECT_EQ(sequence.at(1, k).confidence, 0);
+    }
   }
 }
 

@@ -75,7 +75,7 @@ TEST(Flights, StatedSigmaCovers) {
   for (int k = 0; k < kClips; ++k) {
     const int flights = 1 + k % 5;  // long enough that errors do not refuse them
     const double seconds = 0.45 + 0.1 * (k % 3), scale = 0.95, common = std::exp(kCommonSigma * normal(random));
-    Clip clip(static_cast<int>(60) * flights, [](double) { return 0.0; });
+    Clip clip(60 * flights, [](double) { return 0.0; });
     for (int i = 0; i < flights; ++i) {
       const double in_metres = scale * common * std::exp(kFlightSigma * normal(random));
       const double bend = kCentreSigmaM * normal(random);
@@ -189,7 +189,7 @@ struct Jumper {
       problem.states.push_back(state);
     }
   }
-  [[nodiscard]] FlightSummary Told() const { return StatureFromFlights(problem, track, kStature, 2); }
+  [[nodiscard]] FlightSummary Told() const { return StatureFromFlights(problem, track, 2); }
 };
 
 TEST(Flights, OfASolution) {

@@ -245,7 +245,7 @@ void MoveGrounds(const std::vector<ContactPoint>& points, const std::vector<std:
   }
 }
 
-/// By frame and leg: a landmark of its foot is seen. Everything counts as seen in clips without 2D joints.
+/// By frame and leg: any camera sees a landmark of its foot. Everything counts as seen in clips without 2D joints.
 std::vector<std::array<bool, 2>> FindSeenFeet(const SequenceProblem& problem) {
   const BodyModel& body = *problem.layout.model;
   std::array<std::array<int, 2>, 2> joints{};
@@ -256,14 +256,18 @@ std::vector<std::array<bool, 2>> FindSeenFeet(const SequenceProblem& problem) {
   std::vector<std::array<bool, 2>> seen(problem.frames.size(), {false, false});
   bool any = false;
   for (size_t t = 0; t < seen.size(); ++t) {
-    for (const LandmarkObservation& observation : problem.frames[t].Get<LandmarkTerm>().seen) {
-      any = true;
-      for (const CompiledPoint::Bone& bone : observation.point->bones) {
-        for (const size_t leg : {0, 1}) {
-          if (bone.joint == joints[leg][0] || bone.joint == joints[leg][1]) seen[t][leg] = true;
+    problem.frames[t].ForEachTerm([&](const FrameTerm* term, int /*view*/) {
+      const auto* landmarks = dynamic_cast<const LandmarkTerm*>(term);
+      if (landmarks == nullptr) return;
+      for (const LandmarkObservation& observation : landmarks->seen) {
+        any = true;
+        for (const CompiledPoint::Bone& bone : observation.point->bones) {
+          for (const size_t leg : {0, 1}) {
+            if (bone.joint == joints[leg][0] || bone.joint == joints[leg][1]) seen[t][leg] = true;
+          }
         }
       }
-    }
+    });
   }
   if (!any) seen.assign(seen.size(), {true, true});
   return seen;
@@ -344,7 +348,7 @@ void ClipContacts::StartRound(int /*round*/, const std::vector<int>& /*frames*/,
   const std::vector<char> hovers = FindHovering(*problem, centre_of_mass_, all.lowest, num_threads_);
   std::vector<std::vector<char>> touches(problem->frames.size());
   for (size_t t = 0; t < problem->frames.size(); ++t) touches[t] = FindTouching(*problem, points_, all, hovers, t);
-  if (!level_is_given_) MoveGrounds(points_, touches, problem, &all);
+  if (!level_is_given_ && touches.size() >= whole_) MoveGrounds(points_, touches, problem, &all);
   const auto held = hold_weight_ > 0
                         ? FindHeld(*problem, points_, touches, all)
                         : std::vector(points_.size(), std::vector<std::optional<Vector3d>>(touches.size()));

@@ -67,11 +67,17 @@ class ClipContacts : public ClipTerm {
 
   void Observe(SequenceProblem* problem) override;
   [[nodiscard]] Rounds rounds() const override { return {2, 8, "fit contacts"}; }
+  /// Grounds stay where they are while parts of a long clip are solved: all parts share them, and the feet of the other
+  /// frames stand on them.
+  void BeginRounds(const std::vector<int>& coarse_frames, bool in_windows) override {
+    whole_ = in_windows ? coarse_frames.size() : 0;
+  }
   void StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) override;
 
  private:
   double weight_, hold_weight_;
   bool level_is_given_;
+  size_t whole_ = 0;  ///< number of frames of a problem that moves grounds, at least
   int num_threads_;
   std::vector<ContactPoint> points_;
   CompiledPoint centre_of_mass_;

@@ -60,9 +60,11 @@ class Clip {
     }
   }
 
-  void Start(int round = 0) {
+  /// `whole`: frames of the long clip of which these are a part; 0: it is no part.
+  void Start(int round = 0, int whole = 0) {
     ClipContacts contacts(Input());
     contacts.Observe(&problem_);
+    contacts.BeginRounds(std::vector<int>(size_t(whole)), whole > 0);
     contacts.StartRound(round, {}, &problem_);
   }
   void GiveGround(const KnownGround* ground) { input_.ground = ground; }
@@ -71,6 +73,19 @@ class Clip {
     int count = 0;
     for (const auto& contact : problem_.frames[t].Get<SurfaceContactTerm>().contacts) count += contact.held_m ? 1 : 0;
     return count;
+  }
+  /// A landmark of one foot is seen in these frames, by the first camera or by another.
+  void SeeFoot(const std::string& ankle, int begin, int end, bool by_other_camera) {
+    const std::vector<int> vertex = {body_.data().faces(0, 0)};
+    foot_ = CompilePoint(body_, vertex, std::vector<double>{1}, 0);
+    foot_.bones[0].joint = body_.FindJoint(ankle);
+    foot_.bones.resize(1);
+    for (int t = begin; t < end; ++t) {
+      FrameData& frame = problem_.frames[t];
+      if (by_other_camera) frame.views.emplace_back();
+      TermList& terms = by_other_camera ? frame.views.back().terms : frame.terms;
+      terms.Get<LandmarkTerm>().seen = {{&foot_}};
+    }
   }
   void StartBalance() {
     balance_ = std::make_unique<ClipBalance>(Input());
@@ -107,6 +122,7 @@ class Clip {
   std::vector<ViewObservations> views_;
   SequenceProblem problem_;
   FrameGround ground_;
+  CompiledPoint foot_;
   std::unique_ptr<ClipBalance> balance_;
 };
 
@@ -144,6 +160,26 @@ TEST(ClipContacts, SolesOfSomebodyWhoStandsTouch) {
       EXPECT_TRUE(!contact.touches || clip.body().data().v_template(contact.vertex, 1) < -0.9);
     }
   }
+}
+
+TEST(ClipContacts, AFootThatNoCameraSeesIsNotHeld) {
+  for (const bool by_other : {false, true}) {
+    Clip both(10, [](double) { return 0.0; });
+    both.Start();
+    Clip clip(10, [](double) { return 0.0; });
+    clip.SeeFoot("l_ankle", 0, 10, by_other);
+    clip.Start();
+    EXPECT_EQ(2 * clip.NumHeld(5), both.NumHeld(5)) << by_other;
+  }
+}
+
+TEST(ClipContacts, APartOfALongClipLeavesTheGroundWhereItIs) {
+  Clip part(10, [](double) { return 0.03; }), whole(10, [](double) { return 0.03; });
+  const double level_m = part.ground()->level_m;
+  part.Start(0, 11);
+  whole.Start(0, 10);
+  EXPECT_EQ(part.ground()->level_m, level_m);
+  EXPECT_GT(std::abs(whole.ground()->level_m - level_m), 0.01);
 }
 
 TEST(ClipContacts, RestingSolesAreHeldUnlessSwitchedOff) {
