@@ -33,6 +33,7 @@ constexpr double kSharedTimes = 0.75;  ///< wall-clock time = processor time / t
 // Memory in bytes.
 constexpr double kBaseBytes = 330e6, kBytesOfPixel = 60, kOverlayBytesOfPixel = 120;
 constexpr double kBytesOfPersonFrame = 45e3, kBytesOfMask = 180e3;
+constexpr double kFramesInWhole = 2000, kBytesOfFurtherFrame = 25e3;  ///< longer clips are solved in windows
 
 double ProcessorSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -104,8 +105,10 @@ RunEstimate EstimateRun(const RunWork& work) {
   for (const auto& [stage, seconds] : estimate.processor_seconds) estimate.seconds += seconds;
   estimate.seconds /= std::pow(work.threads, kSharedTimes);
   const double bytes_of_pixel = kBytesOfPixel + (work.overlay ? kOverlayBytesOfPixel : 0);
-  estimate.peak_memory_bytes = static_cast<size_t>(kBaseBytes + bytes_of_pixel * 1e6 * megapixels +
-                                                   (kBytesOfPersonFrame + masked * kBytesOfMask) * people * frames);
+  const double whole = std::min(frames, kFramesInWhole);
+  estimate.peak_memory_bytes = static_cast<size_t>(
+      kBaseBytes + bytes_of_pixel * 1e6 * megapixels +
+      people * (whole * (kBytesOfPersonFrame + masked * kBytesOfMask) + (frames - whole) * kBytesOfFurtherFrame));
   return estimate;
 }
 
