@@ -3,10 +3,10 @@
 """Time and memory of `bodyloom run`: networks, masks, overlay and length; and how the cost grows with frames, people and
 pixels.
 
-usage: run_table.py COMMAND DATA [--rounds N] [--only WORD] [--json F] [--markdown F] [--plot F] [--scratch FOLDER]
+usage: run_table.py COMMAND DATA [--rounds N] [--only WORD ...] [--json F] [--markdown F] [--plot F] [--scratch FOLDER]
   COMMAND   the program `bodyloom` of a build; run it with `nice -n -20` where others use the machine
   DATA      the folder of real recordings (shared/data)
-  --only    rows whose section (table, frames, people, pixels, length) or clip contains the words
+  --only    rows whose section (table, frames, people, pixels, length) or clip contains one of the words
   --scratch where videos are made and kept (default: a folder that is removed)
 
 Every row is a `run` with the arguments beside it, all rows in turn in each round; medians, and half the range as spread.
@@ -156,7 +156,7 @@ def main():
     parser.add_argument("command", type=pathlib.Path)
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", nargs="+", default=[""])
     parser.add_argument("--json", type=pathlib.Path)
     parser.add_argument("--markdown", type=pathlib.Path)
     parser.add_argument("--plot", type=pathlib.Path)
@@ -165,7 +165,8 @@ def main():
     with tempfile.TemporaryDirectory() as removed:
         scratch = o.scratch or pathlib.Path(removed)
         scratch.mkdir(parents=True, exist_ok=True)
-        rows = [row for row in rows_of(Videos(o.data, scratch)) if o.only in row[0] or o.only in row[1]]
+        rows = [row for row in rows_of(Videos(o.data, scratch))
+                if any(word in row[0] or word in row[1] for word in o.only)]
         results = [{"section": s, "label": label, "x": x, "arguments": a, "runs": []} for s, label, x, _, a in rows]
         for number in range(o.rounds):
             for (_, label, _, video, arguments), result in zip(rows, results):
