@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Fits one body to a clip: observations of one camera → a pose in every frame, one shape, and the camera.
-/// How it works: docs/tracking.md.
+/// The method is described in docs/tracking.md.
 #pragma once
 
 #include "tracking/clip/track_plan.h"

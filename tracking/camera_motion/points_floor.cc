@@ -18,11 +18,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kFloorSamples = 300, kFewestOnFloor = 20, kFloorRefinements = 15;
-constexpr double kTolerance = 0.02, kFarthestUp = 20 * kDegree, kMostBelow = 1.0 / 3;
+constexpr int kFloorSamples = 300, kMinOnFloor = 20, kFloorRefinements = 15;
+constexpr double kTolerance = 0.02, kMaxTurnOfUp = 20 * kDegree, kMaxBelow = 1.0 / 3;
 constexpr double kMadToSigma = 1.4826, kFloorKernel = 3;
 constexpr double kCorrelated = 4;  ///< of neighbouring points' errors: as many points count as one
-constexpr double kLeastUpSigma = 0.3 * kDegree, kMostUpSigma = 3 * kDegree;
+constexpr double kMinUpSigmaRad = 0.3 * kDegree, kMaxUpSigmaRad = 3 * kDegree;
 
 double Off(const PointsFloor& floor, const Vector3d& point) { return floor.HeightOf(point) / point.norm(); }
 
@@ -35,7 +35,7 @@ double Score(const PointsFloor& floor, const std::vector<Vector3d>& points) {
     if (std::abs(share) < 1) score += 1 - share * share, ++on;
     below += share < -2 ? 1 : 0;
   }
-  return below > kMostBelow * on ? 0 : score;
+  return below > kMaxBelow * on ? 0 : score;
 }
 
 /// Least squares of Off() about the floor, reweighted; sets what the floor holds but `found` and `why`.
@@ -62,7 +62,7 @@ void Refine(const std::vector<Vector3d>& points, PointsFloor* floor) {
     if (offs.size() < 4) return;
     floor->points = static_cast<int>(offs.size());
     floor->covariance = kCorrelated * squares / std::max(1.0, weights - 3) * H.inverse();
-    floor->covariance.topLeftCorner<2, 2>().diagonal().array() += kLeastUpSigma * kLeastUpSigma;
+    floor->covariance.topLeftCorner<2, 2>().diagonal().array() += kMinUpSigmaRad * kMinUpSigmaRad;
     const Vector3d step = H.ldlt().solve(-g);
     floor->up = (floor->up + step[0] * floor->a + step[1] * floor->b).normalized();
     floor->height += step[2];
@@ -89,9 +89,9 @@ PointsFloor FindPointsFloor(std::span<const Vector3d> points, const Vector3d& ex
   PointsFloor best;
   best.up = expected_up;
   best.why = "few points lie below the camera";
-  if (lower.size() < size_t(kFewestOnFloor)) return best;
+  if (lower.size() < size_t(kMinOnFloor)) return best;
   HashRandom random(lower.size(), {17});
-  double most = 0;
+  double best_score = 0;
   for (int n = 0; n < kFloorSamples; ++n) {
     const Vector3d &p = lower[random.Below(lower.size())], &q = lower[random.Below(lower.size())],
                    &r = lower[random.Below(lower.size())];
@@ -99,17 +99,17 @@ PointsFloor FindPointsFloor(std::span<const Vector3d> points, const Vector3d& ex
     if (!(normal.norm() > 0)) continue;
     normal.normalize();
     if (normal.dot(expected_up) < 0) normal = -normal;
-    if (normal.dot(expected_up) < std::cos(kFarthestUp)) continue;
+    if (normal.dot(expected_up) < std::cos(kMaxTurnOfUp)) continue;
     PointsFloor tried;
     tried.up = normal;
     tried.height = -normal.dot(p);
     if (!(tried.height > 0)) continue;
-    if (const double score = Score(tried, lower); score > most) most = score, best = tried;
+    if (const double score = Score(tried, lower); score > best_score) best_score = score, best = tried;
   }
   best.why = "no level plane is among the points below the camera";
-  if (!(most > 0)) return best;
+  if (!(best_score > 0)) return best;
   Refine(lower, &best);
-  if (best.points < kFewestOnFloor || !(best.height > 0) || !(best.UpSigma() <= kMostUpSigma)) return best;
+  if (best.points < kMinOnFloor || !(best.height > 0) || !(best.UpSigma() <= kMaxUpSigmaRad)) return best;
   best.found = true;
   best.why = std::to_string(best.points) + " points on the floor";
   return best;

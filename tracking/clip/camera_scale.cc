@@ -243,13 +243,11 @@ double SigmaByRolling(double scale_m, std::span<const double> timestamps, const 
   return squares > 0 ? kRollMps * way.norm() / (scale_m * squares) : 0;
 }
 
-CameraScale WithSigmaByRolling(CameraScale scale, std::span<const double> timestamps,
-                               const std::vector<char>& cut_before, std::span<const CameraPose> unit_path) {
-  if (scale.found) {
-    const double rolling = SigmaByRolling(scale.scale_m, timestamps, cut_before, unit_path);
-    scale.sigma_m = std::hypot(scale.sigma_m, rolling * scale.scale_m);
-  }
-  return scale;
+/// The surer one of those that are found.
+const CameraScale& BetterOf(const CameraScale& named, const CameraScale& unnamed, const CameraScaleOptions& options) {
+  if (!named.found || !unnamed.found) return unnamed.found ? unnamed : named;
+  if (named.sigma_m < options.sure_relative_sigma * named.scale_m) return named;
+  return unnamed.sigma_m * named.scale_m < named.sigma_m * unnamed.scale_m ? unnamed : named;
 }
 
 }  // namespace
@@ -271,12 +269,12 @@ CameraScale EstimateCameraScale(std::span<const Feet> points, std::span<const do
   const double seconds_a_frame = (timestamps.back() - timestamps.front()) / static_cast<double>(timestamps.size() - 1);
   const CameraScale unnamed =
       ScaleOfUnnamedFeet(StepsOf(points, timestamps, cut_before, unit_path, options), seconds_a_frame, options);
-  const auto better = [&]() -> const CameraScale& {
-    if (!named.found || !unnamed.found) return unnamed.found ? unnamed : named;
-    if (named.sigma_m < options.sure_relative_sigma * named.scale_m) return named;
-    return unnamed.sigma_m * named.scale_m < named.sigma_m * unnamed.scale_m ? unnamed : named;
-  };
-  return WithSigmaByRolling(better(), timestamps, cut_before, unit_path);
+  CameraScale scale = BetterOf(named, unnamed, options);
+  if (scale.found) {
+    const double rolling = SigmaByRolling(scale.scale_m, timestamps, cut_before, unit_path);
+    scale.sigma_m = std::hypot(scale.sigma_m, rolling * scale.scale_m);
+  }
+  return scale;
 }
 
 CameraScale ScaleByPlace(std::span<const Vector3d> places_m, std::span<const double> timestamps,

@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "data_tools/body/builtin_body.h"
-#include "data_tools/learned/lifter_weights_io.h"
-#include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/base/percentile.h"
 #include "geometry/scene/track.h"
 #include "tests/support/sequence_scene.h"
+#include "tests/support/unknown_focal.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/clip/uncertainty.h"
 #include "tracking/solvers/solve_sequence.h"
@@ -101,18 +100,9 @@ TEST(LongClip, SigmaInWindowsIsThatOfTheWhole) {
 }
 
 TrackSequenceResult FitUnknownFocal(const SynthClip& clip) {
-  TrackSequenceInput input;
-  input.body = &BuiltinBody();
-  input.keypoints = &clip.keypoints;
-  input.prior = &BuiltinPosePrior();
-  input.lifter = &BuiltinLifter();
-  input.camera.width = clip.truth.camera.width;
-  input.camera.height = clip.truth.camera.height;
-  TrackSequenceOptions options;
+  TrackSequenceOptions options = UnknownFocalOptions();
   options.solver = SequenceSolver::kChain;
-  options.camera_knowledge = CameraKnowledge::kUnknownFocal;
-  options.num_threads = 2;
-  return FitClip(input, options);
+  return FitClip(UnknownFocalInput(clip), options);
 }
 
 TEST(LongClip, IsTrackedAsItsBeginningIs) {

@@ -11,12 +11,11 @@
 #include <stdexcept>
 
 #include "data_tools/body/builtin_body.h"
-#include "data_tools/learned/lifter_weights_io.h"
-#include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/body/posed_body.h"
 #include "geometry/math/rotation.h"
+#include "tests/support/unknown_focal.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/problem/sequence_problem.h"
 #include "tracking/problem/stature.h"
@@ -29,25 +28,6 @@ SynthClip Clip(uint64_t seed) {
   options.dense_per_frame = 0;
   options.seed = seed;
   return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 40, 15), options);
-}
-
-TrackSequenceInput InputOf(const SynthClip& clip) {
-  TrackSequenceInput input;
-  input.body = &BuiltinBody();
-  input.keypoints = &clip.keypoints;
-  input.prior = &BuiltinPosePrior();
-  static const LifterWeights lifter = BuiltinLifter();
-  input.lifter = &lifter;
-  input.camera.width = clip.truth.camera.width;
-  input.camera.height = clip.truth.camera.height;
-  return input;
-}
-
-TrackSequenceOptions Options() {
-  TrackSequenceOptions options;
-  options.camera_knowledge = CameraKnowledge::kUnknownFocal;
-  options.num_threads = 2;
-  return options;
 }
 
 constexpr double kCameraHeight = 1.6;
@@ -113,11 +93,11 @@ TEST(TrackPeople, FeetOnOneFloorTellWhoIsTaller) {
   constexpr double kTall = 1.05, kSmall = 0.88;
   const SeenPerson tall = OnFloor(kTall, {-0.9, 0, -0.5}, 1), small = OnFloor(kSmall, {0.9, 0, 0.3}, 2);
   const SynthClip clip = Clip(1);  // for what is not of the people
-  std::vector<TrackSequenceInput> inputs(2, InputOf(clip));
+  std::vector<TrackSequenceInput> inputs(2, UnknownFocalInput(clip));
   inputs[0].keypoints = &tall.keypoints;
   inputs[1].keypoints = &small.keypoints;
   for (TrackSequenceInput& input : inputs) input.camera = MakePinhole(1280, 720, 1000);
-  TrackSequenceOptions options = Options();
+  TrackSequenceOptions options = UnknownFocalOptions();
   options.camera_knowledge = CameraKnowledge::kKnown;
   const TrackPeopleResult together = TrackPeople(inputs, options);
   const SharedScene& scene = together.summary.scene;
@@ -159,11 +139,11 @@ TEST(TrackPeople, FeetAreComparedAtOneFocalLength) {
   constexpr double kTall = 1.05, kSmall = 0.88;
   const SeenPerson tall = OnFloor(kTall, {-0.9, 0, -0.5}, 1), small = OnFloor(kSmall, {0.9, 0, 0.3}, 2);
   const SynthClip clip = Clip(1);
-  std::vector<TrackSequenceInput> inputs(2, InputOf(clip));
+  std::vector<TrackSequenceInput> inputs(2, UnknownFocalInput(clip));
   inputs[0].keypoints = &tall.keypoints;
   inputs[1].keypoints = &small.keypoints;
   for (TrackSequenceInput& input : inputs) input.camera.width = 1280, input.camera.height = 720;
-  TrackSequenceOptions options = Options();
+  TrackSequenceOptions options = UnknownFocalOptions();
   int fits = 0;
   std::string stage;
   options.progress = [&](const TrackProgress& at) {
@@ -190,8 +170,8 @@ TEST(TrackPeople, FeetAreComparedAtOneFocalLength) {
 
 TEST(TrackSequence, DistanceFollowsTheStatureThatIsGiven) {
   const SynthClip clip = Clip(3);
-  TrackSequenceInput input = InputOf(clip);
-  TrackSequenceOptions options = Options();
+  TrackSequenceInput input = UnknownFocalInput(clip);
+  TrackSequenceOptions options = UnknownFocalOptions();
   options.camera_knowledge = CameraKnowledge::kKnown;
   input.camera = clip.truth.camera;
   const TrackSequenceResult mean = FitClip(input, options);
@@ -214,8 +194,8 @@ TEST(TrackSequence, DistanceFollowsTheStatureThatIsGiven) {
 
 TEST(TrackPeople, OnePersonIsTrackedAsAlone) {
   const SynthClip clip = Clip(1);
-  const TrackSequenceResult alone = FitClip(InputOf(clip), Options());
-  const TrackPeopleResult together = TrackPeople({InputOf(clip)}, Options());
+  const TrackSequenceResult alone = FitClip(UnknownFocalInput(clip), UnknownFocalOptions());
+  const TrackPeopleResult together = TrackPeople({UnknownFocalInput(clip)}, UnknownFocalOptions());
   ASSERT_EQ(together.people.size(), 1U);
   EXPECT_EQ(together.people[0].track.motion.poses, alone.track.motion.poses);
   EXPECT_EQ(together.people[0].track.motion.trans, alone.track.motion.trans);
@@ -225,16 +205,16 @@ TEST(TrackPeople, OnePersonIsTrackedAsAlone) {
 
 TEST(TrackPeople, HaveOneFocalLengthAndOneVertical) {
   const SynthClip a = Clip(1), b = Clip(2);
-  const double f_a = FitClip(InputOf(a), Options()).track.camera.fx;
-  const double f_b = FitClip(InputOf(b), Options()).track.camera.fx;
+  const double f_a = FitClip(UnknownFocalInput(a), UnknownFocalOptions()).track.camera.fx;
+  const double f_b = FitClip(UnknownFocalInput(b), UnknownFocalOptions()).track.camera.fx;
   ASSERT_NE(f_a, f_b);
   std::vector<double> fractions;
-  TrackSequenceOptions options = Options();
+  TrackSequenceOptions options = UnknownFocalOptions();
   options.progress = [&](const TrackProgress& at) {
     fractions.push_back(at.fraction);
     return true;
   };
-  const TrackPeopleResult together = TrackPeople({InputOf(a), InputOf(b)}, options);
+  const TrackPeopleResult together = TrackPeople({UnknownFocalInput(a), UnknownFocalInput(b)}, options);
   const double f = together.summary.scene.focal_px;
   EXPECT_EQ(together.people[0].track.camera.fx, f);
   EXPECT_EQ(together.people[1].track.camera.fx, f);
@@ -254,9 +234,9 @@ TEST(TrackPeople, HaveOneFocalLengthAndOneVertical) {
 
 TEST(TrackPeople, FocalLengthsWhoseSpreadIsNotKnownAreNotTakenForKnownOnes) {
   const SynthClip a = Clip(1), b = Clip(2);
-  TrackSequenceOptions options = Options();
+  TrackSequenceOptions options = UnknownFocalOptions();
   options.estimate_uncertainty = false;
-  const TrackPeopleResult together = TrackPeople({InputOf(a), InputOf(b)}, options);
+  const TrackPeopleResult together = TrackPeople({UnknownFocalInput(a), UnknownFocalInput(b)}, options);
   EXPECT_EQ(together.summary.scene.focal_px, 0);
   for (const TrackSequenceResult& person : together.people) {
     EXPECT_TRUE(std::isnan(person.summary.focal_log_sigma));
@@ -293,14 +273,14 @@ TEST(TrackPeople, MasksAreInEverybodysLastFit) {
   SynthClip a = Clip(1), b = Clip(2);
   for (double& time : b.keypoints.timestamps) time += 100;
   const PartLabelSequence masks_a = MasksOf(a), masks_b = MasksOf(b);
-  std::vector<TrackSequenceInput> people = {InputOf(a), InputOf(b)};
+  std::vector<TrackSequenceInput> people = {UnknownFocalInput(a), UnknownFocalInput(b)};
   people[0].part_labels = &masks_a;
   people[1].part_labels = &masks_b;
   for (TrackSequenceInput& person : people) {
     person.camera = a.truth.camera;
     person.lifter = nullptr;
   }
-  TrackSequenceOptions options = Options();
+  TrackSequenceOptions options = UnknownFocalOptions();
   options.camera_knowledge = CameraKnowledge::kKnown;
   options.ground = GroundOptions::Off();
   const TrackPeopleResult result = TrackPeople(people, options);
@@ -316,12 +296,12 @@ TEST(TrackPeople, MasksAreInEverybodysLastFit) {
 TEST(TrackPeople, PeopleWithMasksAloneAreFitted) {
   const SynthClip a = Clip(1), b = Clip(2);
   const PartLabelSequence masks_a = MasksOf(a), masks_b = MasksOf(b);
-  std::vector<TrackSequenceInput> people = {InputOf(a), InputOf(b)};
+  std::vector<TrackSequenceInput> people = {UnknownFocalInput(a), UnknownFocalInput(b)};
   people[0].part_labels = &masks_a;
   people[1].part_labels = &masks_b;
   people[0].initialiser = &a.truth.motion;
   people[1].initialiser = &b.truth.motion;
-  TrackSequenceOptions options = Options();
+  TrackSequenceOptions options = UnknownFocalOptions();
   options.camera_knowledge = CameraKnowledge::kKnown;
   for (TrackSequenceInput& person : people) {
     person.camera = a.truth.camera;
@@ -335,19 +315,19 @@ TEST(TrackPeople, PeopleWithMasksAloneAreFitted) {
 
 TEST(TrackPeople, StopsWhenItIsTold) {
   const SynthClip a = Clip(1), b = Clip(2);
-  TrackSequenceOptions options = Options();
+  TrackSequenceOptions options = UnknownFocalOptions();
   options.progress = [](const TrackProgress&) { return false; };
-  const TrackPeopleResult stopped = TrackPeople({InputOf(a), InputOf(b)}, options);
+  const TrackPeopleResult stopped = TrackPeople({UnknownFocalInput(a), UnknownFocalInput(b)}, options);
   EXPECT_EQ(stopped.people.size(), 2U);
   EXPECT_EQ(stopped.summary.fitted_again[0] + stopped.summary.fitted_again[1], 0);
 }
 
 TEST(TrackPeople, NobodyAndTwoCamerasAreRefused) {
-  EXPECT_THROW(TrackPeople({}, Options()), std::invalid_argument);
+  EXPECT_THROW(TrackPeople({}, UnknownFocalOptions()), std::invalid_argument);
   const SynthClip clip = Clip(1);
-  TrackSequenceInput other = InputOf(clip);
+  TrackSequenceInput other = UnknownFocalInput(clip);
   ++other.camera.width;
-  EXPECT_THROW(TrackPeople({InputOf(clip), other}, Options()), std::invalid_argument);
+  EXPECT_THROW(TrackPeople({UnknownFocalInput(clip), other}, UnknownFocalOptions()), std::invalid_argument);
 }
 
 }  // namespace

@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "data_tools/body/builtin_body.h"
-#include "data_tools/learned/lifter_weights_io.h"
-#include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "tests/support/sequence_scene.h"
+#include "tests/support/unknown_focal.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/clip/uncertainty.h"
 
@@ -74,18 +73,9 @@ SynthClip SeenClip(int frames, double fps) {
 
 /// A synthetic clip whose focal length nobody says.
 TrackSequenceResult TrackUnknownFocal(const SynthClip& clip, const std::optional<FocalPrior>& prior) {
-  TrackSequenceInput input;
-  input.body = &BuiltinBody();
-  input.keypoints = &clip.keypoints;
-  input.prior = &BuiltinPosePrior();
-  input.lifter = &BuiltinLifter();
-  input.camera.width = clip.truth.camera.width;
-  input.camera.height = clip.truth.camera.height;
+  TrackSequenceInput input = UnknownFocalInput(clip);
   input.focal_prior = prior;
-  TrackSequenceOptions options;
-  options.camera_knowledge = CameraKnowledge::kUnknownFocal;
-  options.num_threads = 2;
-  return FitClip(input, options);
+  return FitClip(input, UnknownFocalOptions());
 }
 
 TEST(FocalLength, ATrackHasWhatItsDetectionsAndThePriorSayTogether) {
