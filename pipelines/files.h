@@ -28,4 +28,8 @@ void RequireDistinct(const std::vector<std::string>& inputs, const std::vector<s
 /// Maximum resident size of this process so far, bytes.
 size_t PeakMemoryBytes();
 
+/// Returns freed memory to the system where the C library is glibc, which keeps what was allocated in small pieces: of
+/// detections of a long clip some hundred megabytes. Elsewhere does nothing.
+void ReturnFreedMemory();
+
 }  // namespace bodyloom

@@ -12,6 +12,7 @@
 #include "geometry/body/hand_skeleton.h"
 #include "geometry/scene/observations.h"
 #include "pipelines/detect/upright_people.h"
+#include "pipelines/files.h"
 #include "pipelines/track/clip_camera_path.h"
 #include "pipelines/track/picture_lines.h"
 #include "pipelines/video/track_video.h"
@@ -60,10 +61,12 @@ std::vector<int> ChoosePeople(const TrackPeopleRequest& request, const DetectedC
   return chosen;
 }
 
-/// Tracks them; progress is that of all fits.
+/// Tracks them and frees their masks; progress is that of all fits.
 TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& scene, const PictureVertical& lines,
-                        const std::vector<DetectedObservations>& seen, const std::vector<const BodyModel*>& bodies,
-                        const std::vector<std::vector<CameraPose>>& cameras, const PipelineCallbacks& callbacks) {
+                        const std::vector<const BodyModel*>& bodies,
+                        const std::vector<std::vector<CameraPose>>& cameras, const PipelineCallbacks& callbacks,
+                        std::vector<DetectedObservations>* observations) {
+  std::vector<DetectedObservations>& seen = *observations;
   std::vector<TrackSequenceInput> inputs;
   const auto gets_fingers = [&](size_t i) { return bodies[i] != scene.body.get(); };
   for (const DetectedObservations& person : seen) {
@@ -87,6 +90,8 @@ TrackPeopleResult Solve(const TrackPeopleRequest& request, const SceneInputs& sc
   };
   TrackPeopleResult result = TrackPeople(std::move(inputs), options);
   if (cancelled) throw Cancelled();
+  for (DetectedObservations& person : seen) person.mask.reset();
+  ReturnFreedMemory();
   for (size_t i = 0; i < seen.size(); ++i) {
     TrackSequenceResult& person = result.people[i];
     person.track.playback = scene.playback;
@@ -179,7 +184,11 @@ TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneI
   callbacks.Begin(Concatenate("tracking ", count, count == 1 ? " person" : " people"));
   const PictureVertical lines = VerticalOfClip(request.track, people.clip, scene);
   chosen->clip.masks.clear();  // half of a long clip's observations
-  tracked.result = Solve(request, scene, lines, tracked.seen, tracked.bodies, cameras, callbacks);
+  chosen->clip.people.frames.clear();
+  chosen->clip.samples = {};
+  chosen->clip.background = {};
+  ReturnFreedMemory();
+  tracked.result = Solve(request, scene, lines, tracked.bodies, cameras, callbacks, &tracked.seen);
   report->scene = tracked.result.summary.scene;
   for (size_t i = 0; i < count; ++i) {
     TrackedPerson& person = report->people[i];

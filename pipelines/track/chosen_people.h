@@ -59,8 +59,8 @@ struct TrackedScene {
 };
 
 /// Tracks the selected people and adds the results to `report`, which is ReportOf() them; `gives_fingers`:
-/// GivesFingers(). Warns by callbacks.Say() if a camera assumed to be static seems to move. The masks of `chosen` are
-/// freed. Throws std::runtime_error, Cancelled.
+/// GivesFingers(). Warns by callbacks.Say() if a camera assumed to be static seems to move. Of the clip of
+/// `chosen` detections, masks, samples and background are freed. Throws std::runtime_error, Cancelled.
 TrackedScene TrackDetectedPeople(const TrackPeopleRequest& request, const SceneInputs& scene, ChosenPeople* chosen,
                                  bool gives_fingers, const PipelineCallbacks& callbacks, TrackPeopleReport* report);
 

@@ -33,7 +33,7 @@ constexpr double kSharedTimes = 0.75;  ///< wall-clock time = processor time / t
 // Memory in bytes.
 constexpr double kBaseBytes = 330e6, kBytesOfPixel = 60, kOverlayBytesOfPixel = 120;
 constexpr double kBytesOfPersonFrame = 45e3, kBytesOfMask = 180e3;
-constexpr double kFramesInWhole = 2000, kBytesOfFurtherFrame = 25e3;  ///< longer clips are solved in windows
+constexpr double kFramesInWhole = 2000, kBytesOfFurtherFrame = 13e3;  ///< longer clips are solved in windows
 
 double ProcessorSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 

@@ -21,20 +21,37 @@ constexpr double kMaxTiltSigmas = 3;  ///< a height that so many of the vertical
 constexpr size_t kMaxLevels = 12;     ///< more are not levels but a slope or errors
 constexpr double kRestWeight = 0.5;   ///< w / Δt of a frame at rest
 
+constexpr double kFallWindow_s = 0.14;  ///< on each side of a frame, at least; at most twice that
+
 struct RestingFrame {
-  double height_m = 0, weight = 0;
+  double height_m = 0, weight = 0, seconds = 0;
   bool rests = false;
 };
+
+/// True if the lowest point was lower before frame t and is lower after it, by a fall of kMaxFall on each side. False
+/// where too little is seen around it.
+bool IsTop(std::span<const LowestPoint> points, const Vector3d& up, size_t t) {
+  const auto at = [&](size_t i) { return points[i].seconds; };
+  size_t first = t, last = t;
+  while (first > 0 && at(t) - at(first) < kFallWindow_s) --first;
+  while (last + 1 < points.size() && at(last) - at(t) < kFallWindow_s) ++last;
+  for (const size_t other : {first, last}) {
+    const double seconds = std::abs(at(t) - at(other));
+    if (seconds < kFallWindow_s || seconds > 2 * kFallWindow_s || !points[other].supports) return false;
+    if (up.dot(points[t].place_m - points[other].place_m) < 0.5 * kMaxFall * seconds * seconds) return false;
+  }
+  return true;
+}
 
 std::vector<RestingFrame> Weigh(std::span<const LowestPoint> points, const Vector3d& up) {
   std::vector<RestingFrame> frames(points.size());
   for (size_t t = 0; t < points.size(); ++t) {
-    if (!points[t].supports) continue;
+    if (!points[t].supports || IsTop(points, up, t)) continue;
     const size_t before = t > 0 ? t - 1 : t, after = t + 1 < points.size() ? t + 1 : t;
     const double span = points[after].seconds - points[before].seconds;
     const double seconds = std::min(kMaxFrame_s, after > before ? span / static_cast<double>(after - before) : 0.0);
     const double slow = points[t].speed_mps / kRestSpeed, share = 1 / (1 + slow * slow);
-    frames[t] = {up.dot(points[t].place_m), seconds * share, share >= kRestWeight};
+    frames[t] = {up.dot(points[t].place_m), seconds * share, seconds, share >= kRestWeight};
   }
   return frames;
 }
@@ -86,11 +103,20 @@ Vector3d PlaceOn(const SupportLevel& level, std::span<const LowestPoint> points,
   return weight > 0 ? Vector3d(sum / weight) : sum;
 }
 
-/// Seconds of rest on a level.
+/// Weight of the frames on a level.
 double SecondsOn(const SupportLevel& level, const std::vector<RestingFrame>& frames) {
   double seconds = 0;
   for (const RestingFrame& frame : frames) {
     if (std::abs(frame.height_m - level.level_m) <= kOnLevelM) seconds += frame.weight;
+  }
+  return seconds;
+}
+
+/// Seconds of frames at rest on a level.
+double SecondsAtRest(const SupportLevel& level, const std::vector<RestingFrame>& frames) {
+  double seconds = 0;
+  for (const RestingFrame& frame : frames) {
+    if (frame.rests && std::abs(frame.height_m - level.level_m) <= kOnLevelM) seconds += frame.seconds;
   }
   return seconds;
 }
@@ -133,7 +159,7 @@ SupportLevels FindSupportLevels(std::span<const LowestPoint> points, const Vecto
   } else {
     main = Heaviest(frames, {}, 0);
     const double on_it_s = main.seconds > 0 ? SecondsOn(main, frames) : 0;
-    if (!(on_it_s >= kMinRest_s)) {
+    if (!(SecondsAtRest(main, frames) >= kMinRest_s)) {
       result.why = "nothing is seen to rest for long enough";
       return result;
     }

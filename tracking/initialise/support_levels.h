@@ -5,9 +5,11 @@
 /// The evidence is the lowest point of the body in each frame, with the weight
 ///   w = Δt / (1 + (v / kRestSpeed)²)
 /// Δt: time that the frame stands for, v: speed of the point. In flight the lowest point moves, so its frames hardly
-/// count. The main level is the weighted mean of the heights in the window of 2 kLevelHalfWidthM that holds the largest
-/// weight. It is found when it has kMinRest_s of rest and kMinRestShare of all rest within kOnLevelM; a climber rests
-/// at all heights.
+/// count; at the top of a flight or of a bounce, from which it falls on both sides by more than kMaxFall in 0.14 s, they
+/// do not count at all. The main level is the weighted mean of the heights in the window of 2 kLevelHalfWidthM that
+/// holds the largest weight. It is found when frames at rest (v <= kRestSpeed) within kOnLevelM of it last kMinRest_s,
+/// since somebody who glides, swims or is carried never rests, and when kMinRestShare of the whole weight is there; a
+/// climber rests at all heights.
 ///
 /// Other levels are the same of what is left farther than kApartM from all levels so far. Each needs kMinLevel_s of
 /// rest, and a height that a wrong vertical does not explain: |Δh| > 3 σ_up d, d the horizontal distance of the mean
@@ -26,6 +28,7 @@
 namespace bodyloom {
 
 inline constexpr double kRestSpeed = 0.5;         ///< m/s
+inline constexpr double kMaxFall = 2.5;           ///< m/s², of a point that rests
 inline constexpr double kLevelHalfWidthM = 0.04;  ///< of one level, by the track's errors and raised heels
 inline constexpr double kOnLevelM = 0.12;
 inline constexpr double kApartM = 0.25;  ///< of levels; lower steps are within what a track hovers wrongly

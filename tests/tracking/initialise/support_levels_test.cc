@@ -72,6 +72,23 @@ TEST(SupportLevels, AKnownLevelStaysTheFirst) {
   EXPECT_NEAR(found.levels[1].level_m, -0.55, 0.002);
 }
 
+TEST(SupportLevels, WhoeverGlidesNeverRests) {
+  const auto level = [](double) { return 0.0; };
+  const auto along = [](double s) { return 0.8 * s; };
+  const SupportLevels found = FindSupportLevels(Points(6, level, 0.01, along), kUp, kUpSigma);
+  EXPECT_TRUE(found.levels.empty());
+  EXPECT_EQ(found.why, "nothing is seen to rest for long enough");
+}
+
+/// A bed that is a spring: ±15 cm, at the top of which somebody falls freely.
+TEST(SupportLevels, TheTopOfABounceIsNoLevel) {
+  const double frequency = std::sqrt(9.81 / 0.15);
+  const auto height = [=](double s) { return 0.15 * std::sin(frequency * s); };
+  const SupportLevels found = FindSupportLevels(Points(6, height, 0.005), kUp, kUpSigma);
+  ASSERT_EQ(found.levels.size(), 1U) << found.why;
+  EXPECT_NEAR(found.levels[0].level_m, -1.15, 0.03);
+}
+
 /// Contacts of 0.2 s between flights of 0.2 s that rise by gt²/8 = 5 cm.
 TEST(SupportLevels, FindsTheGroundOfAJogger) {
   const auto height = [](double s) {

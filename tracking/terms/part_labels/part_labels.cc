@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/terms/part_labels/part_labels.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/base/parallel.h"
@@ -41,15 +42,28 @@ std::shared_ptr<PartLabelMatches> KeptMatches::Find(const std::shared_ptr<PartLa
   return slot;
 }
 
+std::vector<std::shared_ptr<PartLabelMatches>> KeptMatches::Forget() {
+  std::vector<std::shared_ptr<PartLabelMatches>> surplus;
+  for (; slots_.size() > capacity_; slots_.pop_front()) {
+    surplus.push_back(std::move(*slots_.front()));
+    slots_.front()->reset();
+  }
+  return surplus;
+}
+
+void KeptMatches::SetCapacity(size_t capacity) {
+  std::vector<std::shared_ptr<PartLabelMatches>> surplus;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  capacity_ = capacity;
+  surplus = Forget();
+}
+
 void KeptMatches::Add(std::shared_ptr<PartLabelMatches> matches, std::shared_ptr<PartLabelMatches>* slot) {
-  std::shared_ptr<PartLabelMatches> forgotten;  // freed after the lock
+  std::vector<std::shared_ptr<PartLabelMatches>> surplus;
   const std::lock_guard<std::mutex> lock(mutex_);
   *slot = std::move(matches);
   slots_.push_back(slot);
-  if (slots_.size() <= capacity_) return;
-  forgotten = std::move(*slots_.front());
-  slots_.front()->reset();
-  slots_.pop_front();
+  surplus = Forget();
 }
 
 void LabelledFrame::Correspond(const FrameLayout& layout, PartLabelMatches* matches) const {
@@ -100,7 +114,6 @@ std::vector<char> PartLabelRounds::SparseFrames() const {
 
 void PartLabelRounds::BeginRounds(const std::vector<int>& coarse_frames, bool in_windows) {
   later_ = is_thinned_ && in_windows;
-  if (later_) kept_.SetCapacity(max_kept_);
   is_used_.assign(frames_.size(), is_thinned_ ? 0 : 1);
   if (!is_thinned_) return;
   std::vector<double> steps;
@@ -125,6 +138,10 @@ void PartLabelRounds::StartRound(int round, const std::vector<int>& frames, Sequ
   if (is_used_.empty()) BeginRounds(frames, false);
   const double s = options_.rounds > 1 ? static_cast<double>(round) / (options_.rounds - 1) : 1.0;
   const double kernel = options_.start_kernel * std::pow(options_.kernel / options_.start_kernel, s);
+  if (later_) {
+    const auto used = std::count_if(frames.begin(), frames.end(), [&](int t) { return is_used_[size_t(t)] != 0; });
+    kept_.SetCapacity(max_kept_ * size_t(used) / frames.size());
+  }
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     const auto t = size_t(frames[i]);
     if (is_used_[t] == 0) return;

@@ -11,7 +11,8 @@
 ///
 /// The matches of a frame take 100 KB. In a clip that is solved in windows (ClipTerm::BeginRounds()) a round notes the
 /// states at which it starts, a frame's matches are computed when they are asked for, and of more than kKeptMatches
-/// those that were computed first are forgotten: the same bits, and few are computed twice.
+/// those that were computed first are forgotten: the same bits, and few are computed twice. Of frames of which
+/// some have masks the same share is kept.
 #pragma once
 
 #include <array>
@@ -37,20 +38,23 @@ std::string WhyNoParts(const TrackSequenceInput& input, const TrackSequenceOptio
 std::vector<PlanEntry> PlanPartLabels(const TrackSequenceInput& input, const TrackSequenceOptions& options);
 std::unique_ptr<ClipTerm> MakePartLabelRounds(const ClipTermInput& clip);
 
-/// Number of frames whose matches are kept.
+/// Number of frames whose matches are kept where all have masks: a window of the solve and a tenth.
 inline constexpr size_t kKeptMatches = 1100;
 
 /// Matches in the order in which they were computed.
 class KeptMatches {
  public:
   explicit KeptMatches(size_t capacity) : capacity_(capacity) {}
-  void SetCapacity(size_t capacity) { capacity_ = capacity; }
+  void SetCapacity(size_t capacity);
   /// Null: they were forgotten.
   std::shared_ptr<PartLabelMatches> Find(const std::shared_ptr<PartLabelMatches>& slot);
-  /// Puts them into the slot of their frame, and empties that of those that were computed first if there are too many.
+  /// Puts them into the slot of their frame, and empties those of the first computed ones that are too many.
   void Add(std::shared_ptr<PartLabelMatches> matches, std::shared_ptr<PartLabelMatches>* slot);
 
  private:
+  /// Takes the surplus out of their slots; called with the lock, freed by the caller without it.
+  std::vector<std::shared_ptr<PartLabelMatches>> Forget();
+
   size_t capacity_;
   std::mutex mutex_;
   std::deque<std::shared_ptr<PartLabelMatches>*> slots_;
