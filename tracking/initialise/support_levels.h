@@ -5,8 +5,8 @@
 /// The evidence is the lowest point of the body in each frame, with the weight
 ///   w = Δt / (1 + (v / kRestSpeed)²)
 /// Δt: time that the frame stands for, v: speed of the point. In flight the lowest point moves, so its frames hardly
-/// count; at the top of a flight or of a bounce, from which it falls on both sides by more than kMaxFall in 0.14 s, they
-/// do not count at all. The main level is the weighted mean of the heights in the window of 2 kLevelHalfWidthM that
+/// count; at the top of a flight or of a bounce, from which it falls on both sides by more than kMaxFall in 0.14 s, not
+/// at all. The main level is the weighted mean of the heights in the window of 2 kLevelHalfWidthM that
 /// holds the largest weight. It is found when frames at rest (v <= kRestSpeed) within kOnLevelM of it last kMinRest_s,
 /// since somebody who glides, swims or is carried never rests, and when kMinRestShare of the whole weight is there; a
 /// climber rests at all heights.
