@@ -102,6 +102,8 @@ class Surface {
   /// Angles of the trunk to the vertical in frames in which the person stands on both feet, degrees.
   [[nodiscard]] const std::vector<double>& leans() const { return leans_; }
   [[nodiscard]] double SecondsAt(size_t i) const { return track_.motion.timestamps[frames_[i]]; }
+  /// The level on which the body touches something in frame i, if it does.
+  [[nodiscard]] double SupportingLevelAt(size_t i) const { return supporting_m_.empty() ? 0 : supporting_m_[i]; }
   [[nodiscard]] double LevelAt(size_t i) const { return track_.LevelAt(frames_[i]); }
   /// Frame i comes right after the one before it.
   [[nodiscard]] bool Continues(size_t i) const { return i > 0 && frames_[i] == frames_[i - 1] + 1; }
@@ -160,13 +162,16 @@ class Surface {
   }
   /// Heights of frames near a change of level.
   void StepBetweenLevels() {
+    for (size_t i = 0; i < frames_.size(); ++i) supporting_m_.push_back(LevelAt(i));
     for (size_t i = 0; i < frames_.size(); ++i) {
       double lowest_step = 0;  // of the other level over that of the frame
       for (const double step : {StepBefore(i), StepAfter(i)}) {
         lowest_step = std::min(lowest_step, step);
         if (step == 0 || heights_[i] <= kContactM) continue;
         for (const double foot : feet_[i]) {
-          if (std::abs(foot - step) <= kContactM) heights_[i] = foot - step;
+          if (std::abs(foot - step) > kContactM) continue;
+          heights_[i] = foot - step;
+          supporting_m_[i] = LevelAt(i) + step;
         }
       }
       if (heights_[i] < 0) heights_[i] = std::min(0.0, heights_[i] - lowest_step);
@@ -195,6 +200,7 @@ class Surface {
   int neck_;
   std::vector<int> frames_;
   std::vector<double> heights_, slides_, leans_;
+  std::vector<double> supporting_m_;         ///< of tracks with several levels
   std::vector<std::array<double, 2>> feet_;  ///< lowest points over the level; of tracks with several levels
   std::vector<SupportedFrame> supports_;
   MatrixX3d last_;
@@ -211,11 +217,14 @@ int CountUnexplained(const Surface& surface) {
     }
     size_t end = begin + 1;
     while (end < h.size() && h[end] > kContactM && surface.Continues(end)) ++end;
-    const double from = surface.SecondsAt(surface.Continues(begin) ? begin - 1 : begin);
-    const double to = surface.SecondsAt(end < h.size() && surface.Continues(end) ? end : end - 1);
+    const size_t before = surface.Continues(begin) ? begin - 1 : begin,
+                 after = end < h.size() && surface.Continues(end) ? end : end - 1;
+    const double from = surface.SecondsAt(before), to = surface.SecondsAt(after);
+    const double left = surface.SupportingLevelAt(before), rise = surface.SupportingLevelAt(after) - left;
     for (size_t i = begin; i < end; ++i) {
       const double t = surface.SecondsAt(i);
-      if (h[i] > kContactM + RiseInFlight(t - from, to - t)) ++count;
+      const double chord = rise == 0 ? left : left + rise * (t - from) / (to - from);
+      if (h[i] > kContactM + (chord - surface.SupportingLevelAt(i)) + RiseInFlight(t - from, to - t)) ++count;
     }
     begin = end;
   }

@@ -8,9 +8,9 @@
 /// the lower level is beside the box, not in it. A frame is in contact if h ≤ 4 cm. Between two contacts at t₀ and t₁ a
 /// body without support can be at most
 ///   h(t) ≤ 4 cm + ½ g (t − t₀) (t₁ − t),   g = 9.81 m/s²
-/// above the ground, because its centre of mass falls freely; a stretch that the clip's ends cut short is taken to end
-/// there. Frames above that bound hover without a flight. Frames without a result are left out, and a stretch ends
-/// where one is missing.
+/// above the ground, or above the line between the levels that it leaves and reaches, because its centre of mass falls
+/// freely; a stretch that the clip's ends cut short is taken to end there. Frames above that bound hover without a
+/// flight. Frames without a result are left out, and a stretch ends where one is missing.
 ///   hover_percent                frames not in contact
 ///   other_level_percent          frames on another level than the ground; left out without any
 ///   hover_unexplained_percent    frames above the bound

@@ -10,6 +10,7 @@
 
 #include "data_tools/body/builtin_body.h"
 #include "geometry/base/units.h"
+#include "geometry/body/centre_of_mass.h"
 #include "geometry/body/posed_body.h"
 
 namespace bodyloom::room_physics_test {
@@ -148,6 +149,26 @@ TEST(RoomPhysics, WhoStandsOnABoxIsOnItsLevel) {
       << "within a second of the step, what is above the floor may be beside the box";
   deeper.level_m.setConstant(0.1);
   EXPECT_NEAR(MeasureRoomPhysics(deeper, BuiltinBody()).penetration_p95_m, 0.1, 1e-5);
+}
+
+TEST(RoomPhysics, AJumpOntoABoxIsAFlight) {
+  // Off the floor at 1 s, 8 cm over the box at the highest, on it 0.46 s later; until then on the level of the floor.
+  const double up_mps = std::sqrt(2 * kGravity * (kBoxM + 0.08)),
+               lands_s = 1 + (up_mps + std::sqrt(2 * kGravity * 0.08)) / kGravity;
+  std::vector<double> heights, levels;
+  for (int t = 0; t < 100; ++t) {
+    const double s = t / kFps - 1;
+    const bool lands = t / kFps >= lands_s;
+    heights.push_back(s <= 0 ? 0 : lands ? kBoxM : up_mps * s - 0.5 * kGravity * s * s);
+    levels.push_back(lands ? kBoxM : 0);
+  }
+  Track track = Placed(heights);
+  track.level_m = Eigen::Map<const Eigen::VectorXd>(levels.data(), 100);
+  const RoomPhysics physics = MeasureRoomPhysics(track, BuiltinBody());
+  EXPECT_GT(physics.hover_share, 0.15);
+  EXPECT_EQ(physics.unexplained_hover_share, 0);
+  for (int t = 55; t < 70; ++t) track.motion.trans(t, 1) -= 0.15;
+  EXPECT_GT(MeasureRoomPhysics(track, BuiltinBody()).unexplained_hover_share, 0.1);
 }
 
 TEST(RoomPhysics, AFootOnTheBoxSupportsTheStep) {

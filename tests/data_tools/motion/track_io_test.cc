@@ -225,6 +225,7 @@ TEST(TrackIo, LevelsAreKeptAndAreOverAWorld) {
   track.level_m = (Eigen::VectorXd(kFrames) << 0, 0, 0.45, 0.45, 0).finished();
   WriteTrack(folder.File("t.npz"), track);
   const Track read = ReadTrack(folder.File("t.npz"));
+  ASSERT_EQ(read.level_m.size(), kFrames);
   EXPECT_EQ(read.level_m, track.level_m);
   EXPECT_EQ(read.LevelAt(3), 0.45);
   const NpzArrays arrays = SampleArrays(CameraModel::kPinhole);
