@@ -21,7 +21,8 @@ nlohmann::ordered_json ToJson(const WorldFrame& world);
 
 /// {"frames", "hover_percent", "hover_unexplained_percent", "lowest_point_mm", "ground_penetration_p95_mm",
 /// "ground_penetration_percent", "contact_slide_mps", "balance_measured_percent", "balance_outside_percent",
-/// "balance_p95_mm", "lean_median_deg"} (data_tools/evaluation/room_physics.h); null without frames.
+/// "balance_p95_mm", "lean_median_deg"}, on several levels "other_level_percent"
+/// (data_tools/evaluation/room_physics.h); null without frames.
 nlohmann::ordered_json ToJson(const RoomPhysics& room);
 
 /// Adds "jumps": {"flights", "stature_m", "sigma_m", "assumed_m"} (tracking/room/flights.h) where there are some.

@@ -88,6 +88,7 @@ py::dict ArraysOf(const py::object& self) {
     const double sigma[] = {track.world->vertical_sigma_deg, track.world->height_sigma_m};
     arrays["world_sigma"] = py::array_t<double>(2, sigma);
   }
+  if (track.level_m.size() > 0) arrays["world_level"] = self.attr("world_level");
   return arrays;
 }
 
@@ -213,6 +214,10 @@ void BindTrack(py::module_& module) {
           "world_source",
           [](const TrackObject& self) { return self.track.world ? ToString(self.track.world->source) : ""; },
           "How the world was found; \"\" when the track does not say.")
+      .def_property_readonly(
+          "world_level", [](const py::object& self) { return MatrixView(TrackOf(self).level_m, self); },
+          "(T,) float64 view: height of the level that supports the person over the world's ground, metres; (0,): the "
+          "ground alone.")
       .def_property_readonly(
           "body", [](const TrackObject& self) { return self.track.motion.body; }, "Name of the body's family.")
       .def_property_readonly(

@@ -328,6 +328,7 @@ Track TrackAtTimes(const BodyModel& body, const Track& track, const std::vector<
   sampled.motion.poses = RowMatrixXd::Constant(Eigen::Index(times_s.size()), columns, kNaN);
   sampled.motion.trans = MatrixX3d::Constant(Eigen::Index(times_s.size()), 3, kNaN);
   sampled.frame_status.assign(times_s.size(), FrameStatus::kLost);
+  sampled.level_m = Eigen::VectorXd::Zero(track.level_m.size() > 0 ? Eigen::Index(times_s.size()) : 0);
   const auto observed = [&](int t) {
     return track.HasResult(t) &&
            (track.frame_status.size() <= size_t(t) || track.frame_status[size_t(t)] != FrameStatus::kInterpolated);
@@ -346,6 +347,7 @@ Track TrackAtTimes(const BodyModel& body, const Track& track, const std::vector<
     if (!observed(at->before) || !observed(at->after)) continue;
     const auto row = static_cast<Eigen::Index>(i);
     sampled.frame_status[i] = FrameStatus::kTracked;
+    if (sampled.level_m.size() > 0) sampled.level_m[row] = track.level_m[at->s < 0.5 ? at->before : at->after];
     if (at->before == at->after) {
       if (columns == track.motion.poses.cols()) {
         sampled.motion.poses.row(row) = track.motion.poses.row(at->before);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "data_tools/evaluation/global_errors.h"
 #include "data_tools/evaluation/metrics.h"
@@ -86,6 +87,7 @@ MatrixX3d MovedByYaw(const MatrixX3d& points, const MatrixX3d& fitted, const Mat
 struct Compared {
   std::vector<MatrixX3d> track, truth;
   std::vector<double> times;
+  std::vector<double> levels;  ///< heights over the track's ground, its own size
   std::vector<int> landmarks;  ///< whose places are compared; the others may be NaN
 };
 
@@ -112,7 +114,7 @@ std::vector<MatrixX3d> RowsOf(const std::vector<MatrixX3d>& frames, const std::v
 }
 
 Compared FramesOfBoth(const std::vector<MatrixX3d>& track, const std::vector<MatrixX3d>& truth,
-                      const std::vector<double>& timestamps) {
+                      const std::vector<double>& timestamps, const std::vector<double>& levels) {
   Compared both;
   both.landmarks = LandmarksOfMost(truth);
   const auto known = [&](const MatrixX3d& points) {
@@ -123,6 +125,7 @@ Compared FramesOfBoth(const std::vector<MatrixX3d>& track, const std::vector<Mat
     both.track.push_back(track[t]);
     both.truth.push_back(truth[t]);
     both.times.push_back(timestamps[t]);
+    both.levels.push_back(levels.empty() ? 0 : levels[t]);
   }
   return both;
 }
@@ -143,6 +146,7 @@ void MeasureBones(Compared* both, RoomErrors* errors) {
     errors->bone_ratio.push_back(scale * own[b] / other[b]);
   }
   for (MatrixX3d& points : both->track) points *= scale;
+  for (double& level : both->levels) level *= scale;
 }
 
 void MeasurePlaces(const Compared& both, RoomErrors* errors) {
@@ -178,13 +182,17 @@ void MeasurePlaces(const Compared& both, RoomErrors* errors) {
 
 void MeasureLegs(const Compared& both, RoomErrors* errors) {
   const size_t T = both.track.size();
-  std::vector<double> true_heights, differences;
-  for (const MatrixX3d& points : both.truth) true_heights.push_back(LowerAnkle(points));
-  const double floor = Percentile(true_heights, 2);
+  std::vector<double> differences;
+  std::map<double, std::vector<double>> true_heights;  // by level
+  for (size_t t = 0; t < T; ++t) true_heights[both.levels[t]].push_back(LowerAnkle(both.truth[t]));
+  std::map<double, double> floors;
+  for (const auto& [level, heights] : true_heights) floors[level] = Percentile(heights, 2);
   double height = 0, knee = 0, knee_bias = 0, slide = 0;
   int standing = 0;
   for (size_t t = 0; t < T; ++t) {
-    differences.push_back(LowerAnkle(both.track[t]) - kAnkleHeight - (true_heights[t] - floor));
+    const double level = both.levels[t];
+    differences.push_back(LowerAnkle(both.track[t]) - level - kAnkleHeight -
+                          (LowerAnkle(both.truth[t]) - floors.at(level)));
     height += std::abs(differences.back());
     for (const int side : {0, 1}) {
       const double difference = KneeFlexionDeg(both.track[t], side) - KneeFlexionDeg(both.truth[t], side);
@@ -212,13 +220,15 @@ void MeasureLegs(const Compared& both, RoomErrors* errors) {
 }  // namespace
 
 RoomErrors MeasureRoomErrors(const std::vector<MatrixX3d>& track, const std::vector<MatrixX3d>& truth,
-                             const std::vector<double>& timestamps) {
+                             const std::vector<double>& timestamps, const std::vector<double>& levels) {
+  BODYLOOM_CHECK(levels.empty() || levels.size() == track.size(), "room errors: ", levels.size(), " levels of ",
+                 track.size(), " frames");
   BODYLOOM_CHECK(track.size() == truth.size() && track.size() == timestamps.size(), "room errors: ", track.size(),
                  " frames of the track, ", truth.size(), " of the truth, ", timestamps.size(), " timestamps");
   constexpr double kNone = kNotMeasured;
   RoomErrors errors{0,     kNone, kNone, kNone, kNone, kNone, kNone, kNone,
                     kNone, kNone, kNone, kNone, kNone, kNone, {},    {}};
-  Compared both = FramesOfBoth(track, truth, timestamps);
+  Compared both = FramesOfBoth(track, truth, timestamps, levels);
   errors.frames = static_cast<int>(both.track.size());
   if (errors.frames < 2) return errors;
   MeasureBones(&both, &errors);
@@ -242,7 +252,12 @@ void AddRoomErrors(const Track& track, const std::vector<MatrixX3d>& truth_in_ca
   const WorldFrame level = WorldOverGround(up_in_camera, 0);
   std::vector<MatrixX3d> truth;
   for (const MatrixX3d& points : truth_in_camera) truth.push_back(level.PointsFromCamera(points));
-  const RoomErrors e = MeasureRoomErrors(landmarks, truth, timestamps);
+  std::vector<double> levels;
+  if (track.level_m.size() > 0) {
+    levels.assign(track.level_m.data(), track.level_m.data() + track.level_m.size());
+    levels.resize(truth.size());
+  }
+  const RoomErrors e = MeasureRoomErrors(landmarks, truth, timestamps, levels);
   const auto add = [&](const char* name, double value, const char* meaning) { evaluation->Add(name, value, meaning); };
   const double mm = kMmPerMetre;
   add("room_g_mpjpe_mm", mm * e.g_mpjpe_m, "landmark error with the stated vertical, mid-hip aligned, one yaw");

@@ -13,8 +13,9 @@
 ///   w_mpjpe_100_mm, wa_mpjpe_100_mm   as EMDB defines them: a similarity in place of yaw and place
 ///   rte_percent          distance of the hips after one rigid motion for the clip / length of the true hips' path
 ///   tilt_deg             angle between the stated and the true vertical, in the camera frame
-///   ankle_height_err_mm, _bias_mm   height of the lower ankle, minus 8 cm, over the stated ground, against that of the
-///                        true lower ankle over the 2nd percentile of its heights: mean absolute and median difference
+///   ankle_height_err_mm, _bias_mm   height of the lower ankle, minus 8 cm, over the stated level of the frame
+///                        (Track::level_m), against that of the true lower ankle over the 2nd percentile of its heights
+///                        in the frames of that level: mean absolute and median difference
 ///   knee_err_deg, _bias_deg         flexion between hip, knee and ankle: mean absolute and mean difference
 ///   trunk_err_deg        angle between the directions from mid-hip to mid-shoulder
 ///   trunk_lean_bias_deg  mean difference of their angles to the vertical
@@ -46,9 +47,10 @@ struct RoomErrors {
   std::vector<double> bone_ratio;
 };
 
-/// `track`, `truth`: T of 17×3 metres, y up; `timestamps`: T seconds. Throws std::invalid_argument when sizes disagree.
+/// `track`, `truth`: T of 17×3 metres, y up; `timestamps`: T seconds; `levels`: T heights of the track's levels over
+/// its ground, or none: all on the ground. Throws std::invalid_argument when sizes disagree.
 RoomErrors MeasureRoomErrors(const std::vector<MatrixX3d>& track, const std::vector<MatrixX3d>& truth,
-                             const std::vector<double>& timestamps);
+                             const std::vector<double>& timestamps, const std::vector<double>& levels = {});
 
 /// The track's COCO landmarks in its world; a track without one is not scored (empty).
 std::vector<MatrixX3d> LandmarksInWorld(const Track& track);

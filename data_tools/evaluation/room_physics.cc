@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,7 @@ namespace {
 
 constexpr double kContactM = 0.04, kTouchingM = 0.02, kPenetrationM = 0.02;
 constexpr double kStandingKneeM = 0.25;  // who kneels has them below half a shank
+constexpr double kStep_s = 1;            // from the time at which one foot is on another level until all of the body is
 constexpr int kFramesAtOnce = 64;
 
 /// Parts of the surface, by the joint with the largest skinning weight.
@@ -90,6 +92,7 @@ class Surface {
         if (mass_.size() > 0) AddSupport(begin + i, PoseSkeleton(body_, shaped.rest_joints, poses[i]).joints);
       }
     }
+    if (track_.level_m.size() > 0) StepBetweenLevels();
   }
 
   [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
@@ -99,6 +102,9 @@ class Surface {
   /// Angles of the trunk to the vertical in frames in which the person stands on both feet, degrees.
   [[nodiscard]] const std::vector<double>& leans() const { return leans_; }
   [[nodiscard]] double SecondsAt(size_t i) const { return track_.motion.timestamps[frames_[i]]; }
+  /// The level on which the body touches something in frame i, if it does.
+  [[nodiscard]] double SupportingLevelAt(size_t i) const { return supporting_m_.empty() ? 0 : supporting_m_[i]; }
+  [[nodiscard]] double LevelAt(size_t i) const { return track_.LevelAt(frames_[i]); }
   /// Frame i comes right after the one before it.
   [[nodiscard]] bool Continues(size_t i) const { return i > 0 && frames_[i] == frames_[i - 1] + 1; }
 
@@ -110,7 +116,9 @@ class Surface {
   }
   void Add(size_t i, const MatrixX3d& in_camera) {
     MatrixX3d now = track_.world->PointsFromCamera(in_camera);
+    now.col(1).array() -= LevelAt(i);
     heights_.push_back(now.col(1).minCoeff());
+    if (track_.level_m.size() > 0) AddFeet(now);
     if (Continues(i)) {
       std::vector<double> speeds;
       const double seconds = SecondsAt(i) - SecondsAt(i - 1);
@@ -124,8 +132,10 @@ class Surface {
   }
   /// After Add() of the same frame.
   void AddSupport(size_t i, const MatrixX3d& joints_in_camera) {
-    const MatrixX3d joints = track_.world->PointsFromCamera(joints_in_camera);
-    SupportedFrame frame{SecondsAt(i), CentreOfMass(joints, mass_), {}, Continues(i)};
+    MatrixX3d joints = track_.world->PointsFromCamera(joints_in_camera);
+    joints.col(1).array() -= LevelAt(i);
+    const bool same_level = i == 0 || LevelAt(i) == LevelAt(i - 1);
+    SupportedFrame frame{SecondsAt(i), CentreOfMass(joints, mass_), {}, Continues(i) && same_level};
     std::array<bool, 4> touches{};
     for (Eigen::Index v = 0; v < last_.rows(); ++v) {
       if (last_(v, 1) > kContactM) continue;
@@ -142,6 +152,45 @@ class Surface {
     leans_.push_back(std::atan2(std::hypot(trunk.x(), trunk.z()), trunk.y()) / kDegree);
   }
 
+  void AddFeet(const MatrixX3d& vertices) {
+    std::array<double, 2>& feet = feet_.emplace_back();
+    feet.fill(std::numeric_limits<double>::infinity());
+    for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
+      const auto part = static_cast<size_t>(parts_[static_cast<size_t>(v)]);
+      if (part < feet.size()) feet[part] = std::min(feet[part], vertices(v, 1));
+    }
+  }
+  /// Heights of frames near a change of level.
+  void StepBetweenLevels() {
+    for (size_t i = 0; i < frames_.size(); ++i) supporting_m_.push_back(LevelAt(i));
+    for (size_t i = 0; i < frames_.size(); ++i) {
+      double lowest_step = 0;  // of the other level over that of the frame
+      for (const double step : {StepBefore(i), StepAfter(i)}) {
+        lowest_step = std::min(lowest_step, step);
+        if (step == 0 || heights_[i] <= kContactM) continue;
+        for (const double foot : feet_[i]) {
+          if (std::abs(foot - step) > kContactM) continue;
+          heights_[i] = foot - step;
+          supporting_m_[i] = LevelAt(i) + step;
+        }
+      }
+      if (heights_[i] < 0) heights_[i] = std::min(0.0, heights_[i] - lowest_step);
+    }
+  }
+  /// Height of the level before the last change of it over that of frame i; 0 without one within kStep_s.
+  [[nodiscard]] double StepBefore(size_t i) const {
+    for (size_t k = i; k > 0 && Continues(k) && SecondsAt(i) - SecondsAt(k - 1) <= kStep_s; --k) {
+      if (LevelAt(k - 1) != LevelAt(i)) return LevelAt(k - 1) - LevelAt(i);
+    }
+    return 0;
+  }
+  [[nodiscard]] double StepAfter(size_t i) const {
+    for (size_t k = i + 1; k < frames_.size() && Continues(k) && SecondsAt(k) - SecondsAt(i) <= kStep_s; ++k) {
+      if (LevelAt(k) != LevelAt(i)) return LevelAt(k) - LevelAt(i);
+    }
+    return 0;
+  }
+
   const Track& track_;
   const BodyModel& body_;
   Skinner skinner_;
@@ -151,6 +200,8 @@ class Surface {
   int neck_;
   std::vector<int> frames_;
   std::vector<double> heights_, slides_, leans_;
+  std::vector<double> supporting_m_;         ///< of tracks with several levels
+  std::vector<std::array<double, 2>> feet_;  ///< lowest points over the level; of tracks with several levels
   std::vector<SupportedFrame> supports_;
   MatrixX3d last_;
 };
@@ -166,11 +217,14 @@ int CountUnexplained(const Surface& surface) {
     }
     size_t end = begin + 1;
     while (end < h.size() && h[end] > kContactM && surface.Continues(end)) ++end;
-    const double from = surface.SecondsAt(surface.Continues(begin) ? begin - 1 : begin);
-    const double to = surface.SecondsAt(end < h.size() && surface.Continues(end) ? end : end - 1);
+    const size_t before = surface.Continues(begin) ? begin - 1 : begin,
+                 after = end < h.size() && surface.Continues(end) ? end : end - 1;
+    const double from = surface.SecondsAt(before), to = surface.SecondsAt(after);
+    const double left = surface.SupportingLevelAt(before), rise = surface.SupportingLevelAt(after) - left;
     for (size_t i = begin; i < end; ++i) {
       const double t = surface.SecondsAt(i);
-      if (h[i] > kContactM + RiseInFlight(t - from, to - t)) ++count;
+      const double chord = rise == 0 ? left : left + rise * (t - from) / (to - from);
+      if (h[i] > kContactM + (chord - surface.SupportingLevelAt(i)) + RiseInFlight(t - from, to - t)) ++count;
     }
     begin = end;
   }
@@ -186,6 +240,10 @@ std::string RoomPhysics::BriefReport() const {
                 "on the ground or in flight in %.0f %% of the frames, within %.0f mm below it in 95 %%",
                 100 * (1 - unexplained_hover_share), kMmPerMetre * penetration_p95_m);
   std::string line = text;
+  if (other_level_share > 0) {
+    std::snprintf(text, sizeof(text), ", on other levels in %.0f %%", 100 * other_level_share);
+    line += text;
+  }
   if (!std::isnan(contact_slide_mps)) {
     std::snprintf(text, sizeof(text), ", contacts slide %.2f m/s", contact_slide_mps);
     line += text;
@@ -221,7 +279,8 @@ RoomPhysics MeasureRoomPhysics(const Track& track, const BodyModel& body, int nu
   }
   const auto count = static_cast<double>(heights.size());
   std::vector<double> depths;
-  int hovers = 0, penetrates = 0;
+  int hovers = 0, penetrates = 0, on_other_levels = 0;
+  for (size_t i = 0; i < heights.size(); ++i) on_other_levels += surface.LevelAt(i) != 0;
   for (const double height : heights) {
     depths.push_back(std::max(0.0, -height));
     hovers += height > kContactM;
@@ -229,6 +288,7 @@ RoomPhysics MeasureRoomPhysics(const Track& track, const BodyModel& body, int nu
   }
   physics.hover_share = hovers / count;
   physics.unexplained_hover_share = CountUnexplained(surface) / count;
+  physics.other_level_share = on_other_levels / count;
   physics.lowest_point_m = Percentile(heights, 50);
   physics.penetration_p95_m = Percentile(depths, 95);
   physics.penetration_share = penetrates / count;
@@ -246,6 +306,9 @@ void AddRoomPhysics(const RoomPhysics& physics, Evaluation* evaluation) {
   add("hover_percent", 100 * physics.hover_share, "frames whose lowest point is above 4 cm over the stated ground");
   add("hover_unexplained_percent", 100 * physics.unexplained_hover_share,
       "of all frames, those that no flight explains");
+  if (physics.other_level_share > 0) {
+    add("other_level_percent", 100 * physics.other_level_share, "frames on another level than the ground");
+  }
   add("lowest_point_mm", kMmPerMetre * physics.lowest_point_m, "median height of the lowest point of the surface");
   add("ground_penetration_p95_mm", kMmPerMetre * physics.penetration_p95_m,
       "95th percentile of its depth below the ground");

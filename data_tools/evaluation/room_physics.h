@@ -2,13 +2,17 @@
 /// Physical plausibility of a track in its own world, without a truth: hovering, ground penetration, sliding contacts,
 /// balance, lean.
 ///
-/// h(t): height of the lowest vertex over the stated ground. A frame is in contact if h ≤ 4 cm. Between two contacts at
-/// t₀ and t₁ a body without support can be at most
+/// h(t): height of the lowest vertex over the stated ground, or over the level that supports the person in the frame
+/// (Track::level_m). Within a second of a change of level, a foot whose lowest vertex is within 4 cm of the other level
+/// stands on it, as whoever steps onto a box has one foot there before the other leaves the ground; and what is above
+/// the lower level is beside the box, not in it. A frame is in contact if h ≤ 4 cm. Between two contacts at t₀ and t₁ a
+/// body without support can be at most
 ///   h(t) ≤ 4 cm + ½ g (t − t₀) (t₁ − t),   g = 9.81 m/s²
-/// above the ground, because its centre of mass falls freely; a stretch that the clip's ends cut short is taken to end
-/// there. Frames above that bound hover without a flight. Frames without a result are left out, and a stretch ends
-/// where one is missing.
+/// above the ground, or above the line between the levels that it leaves and reaches, because its centre of mass falls
+/// freely; a stretch that the clip's ends cut short is taken to end there. Frames above that bound hover without a
+/// flight. Frames without a result are left out, and a stretch ends where one is missing.
 ///   hover_percent                frames not in contact
+///   other_level_percent          frames on another level than the ground; left out without any
 ///   hover_unexplained_percent    frames above the bound
 ///   lowest_point_mm              median of h
 ///   ground_penetration_p95_mm    95th percentile of max(0, −h)
@@ -36,14 +40,16 @@ namespace bodyloom {
 struct RoomPhysics {
   int frames = 0;
   double hover_share = 0, unexplained_hover_share = 0;
+  double other_level_share = 0;
   double lowest_point_m = 0;
   double penetration_p95_m = 0, penetration_share = 0;
   double contact_slide_mps = 0;
   double balance_measured_share = 0, balance_outside_share = 0, balance_p95_m = 0;
   double lean_median_deg = 0;
-  /// "on the ground or in flight in 97 % of the frames, within 12 mm below it in 95 %, contacts slide 0.01 m/s, off
-  /// balance in 3 % of the slow frames, leans 4 deg on both feet", without what was not measured, and without balance
-  /// when fewer than 10 % of the frames are slow; empty without frames.
+  /// "on the ground or in flight in 97 % of the frames, within 12 mm below it in 95 %, on other levels in 40 %,
+  /// contacts slide 0.01 m/s, off balance in 3 % of the slow frames, leans 4 deg on both feet", without what was not
+  /// measured, without other levels where there are none, and without balance when fewer than 10 % of the frames are
+  /// slow; empty without frames.
   [[nodiscard]] std::string BriefReport() const;
 };
 

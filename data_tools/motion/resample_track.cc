@@ -76,6 +76,7 @@ Track ResampleTrack(const Track& track, double fps) {
   out.motion.poses = RowMatrixXd::Constant(T, track.motion.poses.cols(), kNone);
   out.motion.trans = MatrixX3d::Constant(T, 3, kNone);
   out.weak_camera = MatrixX3d::Constant(track.weak_camera.rows() > 0 ? T : 0, 3, kNone);
+  out.level_m = Eigen::VectorXd::Zero(track.level_m.size() > 0 ? T : 0);
   for (int t = 0; t < T; ++t) {
     const auto& [time, before, after, share] = instants[t];
     out.motion.timestamps.push_back(time);
@@ -88,6 +89,7 @@ Track ResampleTrack(const Track& track, double fps) {
                       : track.camera_from_scene.front());
     }
     if (before < 0) continue;
+    if (out.level_m.size() > 0) out.level_m[t] = track.level_m[share < 0.5 ? before : after];
     if (before == after) {
       out.motion.poses.row(t) = track.motion.poses.row(before);
       out.motion.trans.row(t) = track.motion.trans.row(before);

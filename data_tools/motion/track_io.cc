@@ -295,6 +295,10 @@ class TrackReader {
     } else {
       world.source = WorldSource::kGiven;
     }
+    if (Has("world_level")) {
+      const std::vector<double> level = Finite("world_level", {T_});
+      track_.level_m = Eigen::Map<const Eigen::VectorXd>(level.data(), T_);
+    }
     if (!Has("world_sigma")) return;
     const std::vector<double> sigma = Array("world_sigma", {2}).ToDoubles();
     if (sigma[0] < 0 || sigma[1] < 0 || std::isinf(sigma[0]) || std::isinf(sigma[1])) {
@@ -375,6 +379,11 @@ void WriteTrack(const std::string& path, const Track& track) {
     arrays["world_from_camera"] = NdArray::FromDoubles(matrix.data(), {4, 4});
     arrays["world_source"] = NdArray::FromString(ToString(track.world->source));
     arrays["world_sigma"] = NdArray::FromDoubles(sigma, {2});
+  }
+  if (track.level_m.size() > 0) {
+    BODYLOOM_CHECK(track.world && track.level_m.size() == T && track.level_m.allFinite(), "track: level_m has ",
+                   track.level_m.size(), " frames, expected ", T, " finite heights over the ground of a world");
+    arrays["world_level"] = NdArray::FromDoubles(track.level_m.data(), {T});
   }
   const VideoPlayback &playback = track.playback, as_stored;
   if (playback.turn_deg != as_stored.turn_deg) arrays["video_turn_deg"] = NdArray::FromDouble(playback.turn_deg);

@@ -18,10 +18,12 @@
 ///                          frame + t
 ///   world_source           source: 'ground', 'several people', 'vertical', 'given', 'level camera assumed'
 ///   world_sigma            [degrees of the vertical, metres of the ground's height]: standard deviations, NaN: unknown
+///   world_level T          height of the level that supports the person over the world's ground, metres: 0 on the
+///                          ground, else on a box, stairs or a stage; only if any is not 0
 ///   video_turn_deg         degrees by which the video's frames are turned clockwise to be seen by the camera, 90, 180
 ///                          or 270; only if turned
 ///   video_slowdown         seconds of the video per second of `timestamps`; only if not 1
-/// Files without the world members have no world frame. If only world_from_camera exists, its source is 'given'. There
+/// Files without world_from_camera have no world frame. If only world_from_camera exists, its source is 'given'. There
 /// is no `camera` member for a pinhole camera: K and trans suffice.
 ///
 /// The reader also accepts tracks of other programs. Required are poses, trans and a camera (K, or camera T×3); missing

@@ -61,6 +61,9 @@ struct Track {
   Eigen::VectorXd root_sigma;  ///< T: that of the mid-hip's own position; or empty
   /// Vertical and ground; absent when unknown (render/view/floor.h then assumes a level camera).
   std::optional<WorldFrame> world;
+  /// T heights of the level that supports the person over the world's ground, metres: 0 on it, else on a box, stairs or
+  /// a stage. Frames between two levels have that of the one before or after. Empty: the ground alone.
+  Eigen::VectorXd level_m;
   VideoPlayback playback;  ///< of the video that the track was made from
   [[nodiscard]] int num_frames() const { return motion.num_frames(); }
   [[nodiscard]] bool HasMovingCamera() const { return !camera_from_scene.empty(); }
@@ -68,6 +71,8 @@ struct Track {
   [[nodiscard]] Camera CameraAt(int t) const;
   /// Returns true if frame t has a finite pose and camera.
   [[nodiscard]] bool HasResult(int t) const;
+  /// The level of frame t over the world's ground, metres.
+  [[nodiscard]] double LevelAt(int t) const { return level_m.size() > 0 ? level_m[t] : 0; }
 };
 
 /// Throws std::invalid_argument, naming the caller, unless there is a frame, poses, trans and timestamps have T rows

@@ -76,6 +76,7 @@ Track WithShape(const BodyModel& body, const Track& track, const VectorXd& betas
     other.world->translation *= s;
     other.world->height_sigma_m *= s;
   }
+  other.level_m = s * track.level_m;
   other.motion = track.motion;
   other.motion.betas = betas;
   other.frame_status = track.frame_status;
@@ -198,6 +199,7 @@ Track SelectFrames(const Track& track, std::span<const int> frames) {
   selected.weak_camera.resize(track.weak_camera.rows() > 0 ? T : 0, 3);
   selected.joint_sigma.resize(track.joint_sigma.rows() > 0 ? T : 0, track.joint_sigma.cols());
   selected.root_sigma.resize(track.root_sigma.size() > 0 ? T : 0);
+  selected.level_m.resize(track.level_m.size() > 0 ? T : 0);
   for (int t = 0; t < T; ++t) {
     const int s = frames[t];
     BODYLOOM_CHECK(s >= 0 && s <= last, "frame ", s, " of a track of ", last + 1);
@@ -209,6 +211,7 @@ Track SelectFrames(const Track& track, std::span<const int> frames) {
     if (selected.weak_camera.rows() > 0) selected.weak_camera.row(t) = track.weak_camera.row(s);
     if (selected.joint_sigma.rows() > 0) selected.joint_sigma.row(t) = track.joint_sigma.row(s);
     if (selected.root_sigma.size() > 0) selected.root_sigma[t] = track.root_sigma[s];
+    if (selected.level_m.size() > 0) selected.level_m[t] = track.level_m[s];
     if (!track.joints.empty()) selected.joints.push_back(track.joints.at(s));
     if (!track.coco17.empty()) selected.coco17.push_back(track.coco17.at(s));
   }

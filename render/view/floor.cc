@@ -31,6 +31,10 @@ void FloorAxes(const Floor& floor, Vector3d* right, Vector3d* ahead) {
 
 }  // namespace
 
+Floor RaisedFloor(const Floor& floor, double height) {
+  return {floor.point + height * floor.up.normalized(), floor.up};
+}
+
 std::optional<Floor> FloorUnder(const std::vector<MatrixX3d>& joints, const Vector3d& up_in) {
   const Vector3d up = up_in.normalized();
   double lowest = std::numeric_limits<double>::infinity();

@@ -20,6 +20,9 @@ struct Floor {
   Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
 };
 
+/// A parallel floor, higher by `height` metres.
+Floor RaisedFloor(const Floor& floor, double height);
+
 /// Estimates the floor of a clip: perpendicular to `up`, a few centimetres below the lowest joint (an ankle or foot) of
 /// all frames (joints J×3, no rows where a frame is unknown). Empty when no frame is known.
 std::optional<Floor> FloorUnder(const std::vector<MatrixX3d>& joints, const Eigen::Vector3d& up);

@@ -97,7 +97,7 @@ OverlayRenderer::OverlayRenderer(const BodyModel& body, const Track& track, cons
   BODYLOOM_CHECK(leaders.size() == joints.size(), "overlay: the track has ", joints.size(), " frames, its reference ",
                  leaders.size());
   BODYLOOM_CHECK(floor_, "overlay: no frame of the track is known, there is nothing to see from the side");
-  side_.emplace(std::vector<SidePanelPerson>{{leaders, joints}}, track.motion.timestamps,
+  side_.emplace(std::vector<SidePanelPerson>{{leaders, joints, track.level_m}}, track.motion.timestamps,
                 options_.SideView(track.camera.height), *floor_);
 }
 
@@ -131,7 +131,7 @@ Image OverlayRenderer::Backdrop(int frame, const MatrixX3d& vertices, const Came
   if (!options_.floor || !floor_ || camera.model != CameraModel::kPinhole) return image;
   if (vertices.rows() == 0) return image;
   const Vector3d centre = vertices.colwise().mean().transpose();
-  const Floor floor = FloorInCamera(*floor_, track_, frame);
+  const Floor floor = FloorInCamera(RaisedFloor(*floor_, track_.LevelAt(frame)), track_, frame);
   DrawFloorGrid(floor, centre, {}, camera, &image);
   if (options_.body) DrawShadow(vertices, body_.data().faces, floor, camera, 0.35, &image);
   return image;

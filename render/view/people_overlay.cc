@@ -61,6 +61,15 @@ std::vector<MatrixX3d> JointsByMoment(const PersonInOverlay& person, const std::
   return by_moment;
 }
 
+/// Levels of one person by moment; empty on the ground alone.
+Eigen::VectorXd LevelsByMoment(const Track& track, const std::vector<int>& frames) {
+  Eigen::VectorXd by_moment = Eigen::VectorXd::Zero(track.level_m.size() > 0 ? Eigen::Index(frames.size()) : 0);
+  for (Eigen::Index t = 0; t < by_moment.size(); ++t) {
+    if (frames[size_t(t)] >= 0) by_moment[t] = track.LevelAt(frames[size_t(t)]);
+  }
+  return by_moment;
+}
+
 /// Mean height in the image of a person's joints over all moments, pixels; 0 where it is absent or behind the camera.
 double MeanHeightPx(const PersonInOverlay& person, const std::vector<int>& frames,
                     const std::vector<MatrixX3d>& joints) {
@@ -108,7 +117,9 @@ PeopleOverlay::PeopleOverlay(std::vector<PersonInOverlay> people, const OverlayO
   std::stable_sort(in_panel_.begin(), in_panel_.end(), [&](size_t a, size_t b) { return heights[a] > heights[b]; });
   if (!options.side_view || in_panel_.empty()) return;
   std::vector<SidePanelPerson> largest_first;
-  for (const size_t i : in_panel_) largest_first.push_back({std::move(joints[i])});
+  for (const size_t i : in_panel_) {
+    largest_first.push_back({std::move(joints[i]), {}, LevelsByMoment(*people_[i].track, frames_[i])});
+  }
   side_.emplace(largest_first, timestamps_, options.SideView(camera().height), *floor_);
   in_panel_.resize(size_t(side_->num_cells()));
 }

@@ -62,7 +62,8 @@ SidePanelPerson WithFloor(SidePanelPerson person, const Floor& floor) {
     const MatrixX3d& joints = person.joints[t];
     if (joints.rows() == 0) continue;
     Eigen::Index lowest = 0;
-    const double height = ((joints.rowwise() - floor.point.transpose()) * up).minCoeff(&lowest);
+    const double level = person.level_m.size() > 0 ? person.level_m[static_cast<Eigen::Index>(t)] : 0;
+    const double height = ((joints.rowwise() - floor.point.transpose()) * up).minCoeff(&lowest) - level;
     MatrixX3d& others = person.others[t];
     others.conservativeResize(others.rows() + 1, 3);
     others.bottomRows<1>() = joints.row(lowest) - std::clamp(height, 0.0, kFloorInViewM) * up.transpose();
@@ -83,7 +84,8 @@ std::vector<SidePanel::Cell> SidePanel::Arranged(const std::vector<SidePanelPers
     (stacked ? own.height : own.width) = end - begin;
     const SidePanelPerson& person = people[static_cast<size_t>(k)];
     cells.push_back({stacked ? 0 : begin, stacked ? begin : 0,
-                     FollowView(person.joints, timestamps, own, person.others), StudioBackdrop(own.width, own.height)});
+                     FollowView(person.joints, timestamps, own, person.others), StudioBackdrop(own.width, own.height),
+                     person.level_m});
   }
   return cells;
 }
@@ -105,6 +107,8 @@ SidePanel::SidePanel(const std::vector<SidePanelPerson>& people, const std::vect
   std::vector<SidePanelPerson> shown;
   for (const SidePanelPerson& person : people) {
     if (shown.size() == kMostPeople) break;
+    BODYLOOM_CHECK(person.level_m.size() == 0 || size_t(person.level_m.size()) == person.joints.size(),
+                   "side panel: levels of ", person.level_m.size(), " frames, joints of ", person.joints.size());
     shown.push_back(WithFloor(person, floor));
   }
   for (; cells_.empty(); shown.pop_back()) {
@@ -123,7 +127,8 @@ SidePanel::Picture SidePanel::At(int cell, int t) const {
   const View view = own.follow.At(t);
   const Eigen::Matrix3d& R = view.from_camera.camera_from_world_rotation;
   const Vector3d& translation = view.from_camera.camera_from_world_translation;
-  Picture picture{view, {R * floor_.point + translation, R * floor_.up}, own.backdrop};
+  const Floor floor = own.level_m.size() > 0 ? RaisedFloor(floor_, own.level_m[t]) : floor_;
+  Picture picture{view, {R * floor.point + translation, R * floor.up}, own.backdrop};
   DrawFloorGrid(picture.floor, R * own.follow.CentreAt(t) + translation, {}, view.camera, &picture.image);
   return picture;
 }
@@ -197,11 +202,15 @@ void DrawFloorContact(const FloorContact& contact, const Floor& floor, const Cam
   const Colour colour = contact.lowest_m > 0 ? kInkColour : kBelowFloorColour;
   const int thickness = std::max(1, static_cast<int>(std::lround(cap_px / 8)));
   cv::Mat target = MatOf(image);
-  cv::line(target, from, to, ScalarOf(colour), thickness, cv::LINE_AA, kDrawingShift);
-  const std::string height = std::to_string(std::lround(100 * contact.lowest_m)) + " cm";
   const int middle = (from.y + to.y) / (2 << kDrawingShift), cap = static_cast<int>(std::ceil(cap_px));
+  // Bars at its ends, and the number apart from it: a short line close to "5 cm" reads as "15 cm".
+  const cv::Point bar((cap << kDrawingShift) / 3, 0);
+  for (const auto& [a, b] : {std::pair(from, to), {from - bar, from + bar}, {to - bar, to + bar}}) {
+    cv::line(target, a, b, ScalarOf(colour), thickness, cv::LINE_AA, kDrawingShift);
+  }
+  const std::string height = std::to_string(std::lround(100 * contact.lowest_m)) + " cm";
   const int width = static_cast<int>(std::ceil(WidthOfWords(height, cap_px)));
-  const int x = std::clamp((to.x >> kDrawingShift) + cap / 2, 0, std::max(0, image->width - width - cap));
+  const int x = std::clamp((to.x >> kDrawingShift) + cap + cap / 2, 0, std::max(0, image->width - width - cap));
   const int baseline = std::clamp(middle + cap / 2, 2 * cap, std::max(2 * cap, image->height - cap));
   DrawWords(height, x, baseline, cap_px, colour, image);
 }

@@ -20,6 +20,7 @@ namespace bodyloom {
 struct SidePanelPerson {
   std::vector<MatrixX3d> joints;       ///< J×3; the camera follows the first one
   std::vector<MatrixX3d> others = {};  ///< kept in view too (the true joints); or empty
+  Eigen::VectorXd level_m = {};        ///< of what supports the person over the floor, metres; empty: the floor
 };
 
 class SidePanel {
@@ -43,7 +44,7 @@ class SidePanel {
     Floor floor;
     Image image;
   };
-  /// The floor's grid and nobody, at frame t of the joints.
+  /// The grid of the floor, at the level that supports the person, and nobody, at frame t of the joints.
   [[nodiscard]] Picture At(int cell, int t) const;
 
   /// Places the cells' pictures, one for each, in the panel.
@@ -54,6 +55,7 @@ class SidePanel {
     int x = 0, y = 0;
     FollowView follow;
     Image backdrop;
+    Eigen::VectorXd level_m;
   };
   static std::vector<Cell> Arranged(const std::vector<SidePanelPerson>& people, const std::vector<double>& timestamps,
                                     const FollowViewOptions& options, bool stacked);
@@ -97,7 +99,8 @@ struct FloorContact {
 FloorContact ContactWithFloor(const MatrixX3d& vertices, const Floor& floor);
 
 /// Draws a green disc, 4 cm in radius, where the body touches the floor. Where its lowest point does not, a line from
-/// there straight to the floor, and its height in cm ("12 cm", letters cap_px high): dark above the floor, red below.
+/// there straight to the floor with bars at its ends, and its height in cm ("12 cm", letters cap_px high): dark above
+/// the floor, red below.
 void DrawFloorContact(const FloorContact& contact, const Floor& floor, const Camera& camera, double cap_px,
                       Image* image);
 

@@ -471,6 +471,7 @@ void ClipFit::Finish(TrackSequenceResult* result) {
   SummariseImageTerms(problem_, residuals, &summary_);
   for (const auto& term : terms_) term->Summarise(problem_, &summary_);
   result->track.world = WorldOfGround(summary_.ground, result->track.joints);
+  result->track.level_m = LevelsOverGround(problem_.frames, summary_.ground);
   summary_.flights = StatureFromFlights(problem_, result->track, threads_);
   clock_.Record("finish");
   summary_.focal_log_sigma = problem_.layout.focal_column < 0 ? 0 : std::numeric_limits<double>::quiet_NaN();

@@ -51,6 +51,11 @@ CentreMotion MotionAround(const SequenceProblem& problem, const Matrix3Xd& centr
   const int T = static_cast<int>(at.size());
   while (first > 0 && problem.cut_before[first] == 0 && at[t] - at[first - 1] <= kHalf) --first;
   while (last + 1 < T && problem.cut_before[last + 1] == 0 && at[last + 1] - at[t] <= kHalf) ++last;
+  return MotionOver(problem, centres, first, last, t);
+}
+
+CentreMotion MotionOver(const SequenceProblem& problem, const Matrix3Xd& centres, int first, int last, int t) {
+  const std::vector<double>& at = problem.timestamps;
   const int n = last - first + 1;
   if (n < 3) return {};
   Eigen::MatrixX3d powers(n, 3);

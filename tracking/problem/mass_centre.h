@@ -26,5 +26,7 @@ struct CentreMotion {
   Eigen::Vector3d place = Eigen::Vector3d::Zero(), acceleration = Eigen::Vector3d::Zero();
 };
 CentreMotion MotionAround(const SequenceProblem& problem, const Eigen::Matrix3Xd& centres, int t);
+/// The same at frame t of the parabola fitted to the frames first … last.
+CentreMotion MotionOver(const SequenceProblem& problem, const Eigen::Matrix3Xd& centres, int first, int last, int t);
 
 }  // namespace bodyloom

@@ -3,14 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "geometry/base/check.h"
+#include "geometry/base/percentile.h"
 #include "render/view/floor.h"
+#include "tracking/initialise/support_levels.h"
 
 namespace bodyloom {
 namespace {
 
 using Eigen::Vector3d;
+using Eigen::VectorXd;
 
 constexpr double kUpFloorDeg = 2;  ///< of the spread of a person's vertical
 
@@ -102,6 +106,27 @@ void JoinGrounds(const std::vector<TrackSequenceSummary>& people, const CommonGr
   scene->why = Concatenate("feet of ", alone->contact_frames, " frames stand on it");
 }
 
+/// The levels of a track whose world is no longer that of its own fit.
+VectorXd LevelsOverWorld(const TrackSequenceResult& person) {
+  const Track& track = person.track;
+  const GroundSummary& own = person.summary.ground;
+  std::map<double, std::vector<double>> heights;  // over the world's ground, by level over the fit's
+  for (int t = 0; own.has_plane && t < track.num_frames(); ++t) {
+    if (!track.HasResult(t)) continue;
+    const Vector3d pelvis = track.joints[static_cast<size_t>(t)].row(0).transpose();
+    const double level = track.LevelAt(t), above = own.up.dot(pelvis) + own.camera_height_m - level;
+    heights[level].push_back(track.world->PointFromCamera(pelvis - above * own.up).y());
+  }
+  std::map<double, double> moved;
+  for (const auto& [level, over_world] : heights) {
+    const double height = Percentile(over_world, 50);
+    moved[level] = std::abs(height) < kApartM ? 0 : height;
+  }
+  VectorXd levels = VectorXd::Zero(track.num_frames());
+  for (int t = 0; t < track.num_frames(); ++t) levels[t] = moved[track.LevelAt(t)];
+  return levels.isZero(0) ? VectorXd() : levels;
+}
+
 }  // namespace
 
 SharedScene JoinScenes(const std::vector<TrackSequenceSummary>& people, const FocalPrior& prior,
@@ -132,6 +157,16 @@ WorldFrame WorldOfGround(const GroundSummary& ground, const std::vector<MatrixX3
   return world;
 }
 
+VectorXd LevelsOverGround(const std::vector<FrameData>& frames, const GroundSummary& ground) {
+  VectorXd levels = VectorXd::Zero(static_cast<Eigen::Index>(frames.size()));
+  for (size_t t = 0; ground.has_plane && t < frames.size(); ++t) {
+    const FrameGround* own = frames[t].ground;
+    if (own == nullptr || own->up != ground.up) continue;
+    levels[static_cast<Eigen::Index>(t)] = own->level_m + ground.camera_height_m;
+  }
+  return levels.isZero(0) ? VectorXd() : levels;
+}
+
 WorldFrame WorldOfScene(const SharedScene& scene, const std::vector<MatrixX3d>& joints) {
   if (!scene.has_up) return AssumedWorld(joints);
   const KnownGround& ground = scene.ground;
@@ -150,7 +185,9 @@ void ShareWorld(const SharedScene& scene, std::vector<TrackSequenceResult>* peop
   }
   const WorldFrame world = WorldOfScene(scene, joints);
   for (TrackSequenceResult& person : *people) {
-    if (person.summary.IsUsable()) person.track.world = world;
+    if (!person.summary.IsUsable()) continue;
+    person.track.world = world;
+    person.track.level_m = scene.ground.has_plane ? LevelsOverWorld(person) : VectorXd();
   }
 }
 

@@ -13,6 +13,7 @@
 #include "geometry/math/arrays.h"
 #include "geometry/scene/world_frame.h"
 #include "tracking/problem/camera_knowledge.h"
+#include "tracking/problem/frame_cost.h"
 #include "tracking/problem/track_options.h"
 #include "tracking/problem/track_summary.h"
 #include "tracking/room/common_ground.h"
@@ -42,9 +43,15 @@ SharedScene JoinScenes(const std::vector<TrackSequenceSummary>& people, const Fo
 /// found either, the camera is assumed to be level.
 WorldFrame WorldOfGround(const GroundSummary& ground, const std::vector<MatrixX3d>& joints);
 
-/// The same for several people in one view, with the `joints` of all of them.
+/// Track::level_m of a fit with this ground: the levels of its frames over it. Frames of other shots, which have a
+/// vertical of their own, are on it.
+Eigen::VectorXd LevelsOverGround(const std::vector<FrameData>& frames, const GroundSummary& ground);
+
+/// The world for several people in one view, with the `joints` of all of them.
 WorldFrame WorldOfScene(const SharedScene& scene, const std::vector<MatrixX3d>& joints);
-/// Gives this world to all usable tracks.
+/// Gives this world to all usable tracks, and the levels of each over its ground: a level of their fit less than
+/// kApartM (initialise/support_levels.h) from the common ground, in the median of the places where they are on it, is
+/// that ground.
 void ShareWorld(const SharedScene& scene, std::vector<TrackSequenceResult>* people);
 
 }  // namespace bodyloom

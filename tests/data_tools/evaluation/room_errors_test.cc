@@ -163,6 +163,22 @@ TEST(RoomErrors, AnEarThatIsNeverSeenIsLeftOut) {
   EXPECT_EQ(MeasureRoomErrors(track, truth, Times()).frames, 0) << "without a wrist there is no person";
 }
 
+TEST(RoomErrors, AnklesAreMeasuredFromTheLevelOfTheFrame) {
+  // The second half is on a box of 0.4 m, which the track has 3 cm too high, with its person on it.
+  std::vector<MatrixX3d> truth = Walk(), track = Walk();
+  std::vector<double> levels(kFrames, 0);
+  for (size_t t = kFrames / 2; t < size_t{kFrames}; ++t) {
+    truth[t].col(1).array() += 0.4;
+    track[t].col(1).array() += levels[t] = 0.43;
+  }
+  EXPECT_NEAR(MeasureRoomErrors(track, truth, Times()).ankle_height_err_m, 0.03 / 2, 1e-9);
+  EXPECT_NEAR(MeasureRoomErrors(track, truth, Times(), levels).ankle_height_err_m, 0, 1e-9);
+  for (size_t t = kFrames / 2; t < size_t{kFrames}; ++t) track[t].col(1).array() += 0.05;
+  EXPECT_NEAR(MeasureRoomErrors(track, truth, Times(), levels).ankle_height_err_m, 0.05 / 2, 1e-9);
+  levels.pop_back();
+  EXPECT_THROW(MeasureRoomErrors(track, truth, Times(), levels), std::invalid_argument);
+}
+
 TEST(RoomErrors, OfATrackAreInItsOwnWorld) {
   Track track;
   track.camera = MakePinhole(1280, 720, 1000);
@@ -183,6 +199,10 @@ TEST(RoomErrors, OfATrackAreInItsOwnWorld) {
   EXPECT_NEAR(e.Value("tilt_deg"), 5, 1e-6);
   EXPECT_NEAR(e.Value("trunk_err_deg"), 5, 1e-3);
   EXPECT_EQ(e.breakdowns.back().labels.size(), 11U);
+  track.level_m = Eigen::VectorXd::Constant(kFrames, 0.2);
+  Evaluation on_level;
+  AddRoomErrors(track, in_camera, Vector3d(0, -1, 0), Times(), &on_level);
+  EXPECT_NEAR(on_level.Value("ankle_height_bias_mm"), e.Value("ankle_height_bias_mm") - 200, 1e-6);
 }
 
 }  // namespace

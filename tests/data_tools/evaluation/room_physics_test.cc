@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "data_tools/body/builtin_body.h"
 #include "geometry/base/units.h"
+#include "geometry/body/centre_of_mass.h"
 #include "geometry/body/posed_body.h"
 
 namespace bodyloom::room_physics_test {
@@ -115,6 +119,85 @@ TEST(RoomPhysics, SlidingIsTheSpeedOfWhatTouches) {
               1e-4);
   EXPECT_TRUE(
       std::isnan(MeasureRoomPhysics(Placed(std::vector<double>(50, 0.5), along), BuiltinBody()).contact_slide_mps));
+}
+
+constexpr double kBoxM = 0.45;
+
+/// Stands on the floor for a second, then on a box for another one; `levels` says so.
+Track OntoBox(bool levels) {
+  std::vector<double> heights(100, 0.0);
+  std::fill(heights.begin() + 50, heights.end(), kBoxM);
+  Track track = Placed(heights);
+  if (levels) track.level_m = Eigen::Map<const Eigen::VectorXd>(heights.data(), 100);
+  return track;
+}
+
+TEST(RoomPhysics, WhoStandsOnABoxIsOnItsLevel) {
+  const RoomPhysics ground_alone = MeasureRoomPhysics(OntoBox(false), BuiltinBody());
+  EXPECT_EQ(ground_alone.hover_share, 0.5) << "every frame on the box";
+  EXPECT_EQ(ground_alone.other_level_share, 0);
+  const RoomPhysics levels = MeasureRoomPhysics(OntoBox(true), BuiltinBody());
+  EXPECT_EQ(levels.hover_share, 0);
+  EXPECT_EQ(levels.unexplained_hover_share, 0);
+  EXPECT_EQ(levels.other_level_share, 0.5);
+  EXPECT_NEAR(levels.penetration_p95_m, 0, 1e-5);
+  EXPECT_EQ(levels.balance_outside_share, 0) << "the centre of mass does not jump with the level";
+  EXPECT_NE(levels.BriefReport().find("in 95 %, on other levels in 50 %, contacts"), std::string::npos);
+  Track deeper = OntoBox(true);
+  deeper.level_m.tail(50).array() += 0.1;
+  EXPECT_NEAR(MeasureRoomPhysics(deeper, BuiltinBody()).penetration_p95_m, 0, 1e-5)
+      << "within a second of the step, what is above the floor may be beside the box";
+  deeper.level_m.setConstant(0.1);
+  EXPECT_NEAR(MeasureRoomPhysics(deeper, BuiltinBody()).penetration_p95_m, 0.1, 1e-5);
+}
+
+TEST(RoomPhysics, AJumpOntoABoxIsAFlight) {
+  // Off the floor at 1 s, 8 cm over the box at the highest, on it 0.46 s later; until then on the level of the floor.
+  const double up_mps = std::sqrt(2 * kGravity * (kBoxM + 0.08)),
+               lands_s = 1 + (up_mps + std::sqrt(2 * kGravity * 0.08)) / kGravity;
+  std::vector<double> heights, levels;
+  for (int t = 0; t < 100; ++t) {
+    const double s = t / kFps - 1;
+    const bool lands = t / kFps >= lands_s;
+    heights.push_back(s <= 0 ? 0 : lands ? kBoxM : up_mps * s - 0.5 * kGravity * s * s);
+    levels.push_back(lands ? kBoxM : 0);
+  }
+  Track track = Placed(heights);
+  track.level_m = Eigen::Map<const Eigen::VectorXd>(levels.data(), 100);
+  const RoomPhysics physics = MeasureRoomPhysics(track, BuiltinBody());
+  EXPECT_GT(physics.hover_share, 0.15);
+  EXPECT_EQ(physics.unexplained_hover_share, 0);
+  for (int t = 55; t < 70; ++t) track.motion.trans(t, 1) -= 0.15;
+  EXPECT_GT(MeasureRoomPhysics(track, BuiltinBody()).unexplained_hover_share, 0.1);
+}
+
+TEST(RoomPhysics, AFootOnTheBoxSupportsTheStep) {
+  // The left foot is drawn up flat, by bent hip, knee and ankle; while it is on the box the right one hangs beside it.
+  const BodyModel& body = BuiltinBody();
+  for (const bool box_begins : {false, true}) {
+    Track track = OntoBox(true);
+    double drawn_up_m = 0;
+    for (int t = 40; t < 50; ++t) {
+      for (const auto& [joint, angle] : {std::pair("l_hip", -0.6), {"l_knee", 1.2}, {"l_ankle", -0.6}}) {
+        track.motion.poses(t, 3 * body.FindJoint(joint)) = angle;
+      }
+      const BodyPose pose = PoseFromAxisAngle(body, track.motion.poses.row(t).transpose(), Eigen::Vector3d(0, 0, 4));
+      const MatrixX3d joints = PoseSkeleton(body, body.RestJoints(track.motion.betas), pose).joints;
+      drawn_up_m = joints(body.FindJoint("r_ankle"), 1) - joints(body.FindJoint("l_ankle"), 1);
+      track.motion.trans(t, 1) -= kBoxM - drawn_up_m;
+      track.level_m[t] = box_begins ? kBoxM : 0;
+    }
+    ASSERT_GT(drawn_up_m, 0.1);
+    const RoomPhysics physics = MeasureRoomPhysics(track, body);
+    EXPECT_EQ(physics.hover_share, 0) << box_begins;
+    EXPECT_EQ(physics.penetration_share, 0) << box_begins;
+    Track no_box = track;
+    no_box.level_m.resize(0);
+    EXPECT_EQ(MeasureRoomPhysics(no_box, body).hover_share, 0.6);
+    for (int t = 40; t < 50; ++t) track.motion.trans(t, 1) -= 0.1;
+    if (box_begins) continue;
+    EXPECT_EQ(MeasureRoomPhysics(track, body).hover_share, 0.1) << "neither foot is on anything";
+  }
 }
 
 TEST(RoomPhysics, LostFramesAreLeftOutAndNeedsAWorld) {

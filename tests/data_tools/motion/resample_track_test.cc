@@ -53,12 +53,14 @@ void ExpectTheMotion(const Track& track, double fps) {
 }
 
 TEST(ResampleTrack, HalfTheRateIsEverySecondFrame) {
-  const Track track = TurningAt(Regular(21, 60));
+  Track track = TurningAt(Regular(21, 60));
+  track.level_m = Eigen::VectorXd::LinSpaced(21, 0, 20);
   const Track half = ResampleTrack(track, 30);
   ASSERT_EQ(half.num_frames(), 11);
   for (int t = 0; t < 11; ++t) {
     EXPECT_EQ(half.motion.poses.row(t), track.motion.poses.row(2 * t)) << t;
     EXPECT_NEAR(half.motion.timestamps[t], t / 30.0, 1e-12);
+    EXPECT_EQ(half.LevelAt(t), 2 * t);
   }
   EXPECT_EQ(half.motion.betas, track.motion.betas);
   EXPECT_DOUBLE_EQ(FrameRateWithoutGaps(half.motion), 30);

@@ -217,6 +217,28 @@ TEST(TrackIo, WorldIsKeptAndMayBeMissing) {
   EXPECT_THAT(ErrorOf(With(given, "world_sigma", {-1, 0}, {2})), HasSubstr("world_sigma"));
 }
 
+TEST(TrackIo, LevelsAreKeptAndAreOverAWorld) {
+  EXPECT_EQ(SampleArrays(CameraModel::kPinhole).count("world_level"), 0U) << "the ground alone";
+  EXPECT_EQ(Read(SampleArrays(CameraModel::kPinhole)).LevelAt(3), 0);
+  const TemporaryFolder folder;
+  Track track = SampleTrack(CameraModel::kPinhole);
+  track.level_m = (Eigen::VectorXd(kFrames) << 0, 0, 0.45, 0.45, 0).finished();
+  WriteTrack(folder.File("t.npz"), track);
+  const Track read = ReadTrack(folder.File("t.npz"));
+  ASSERT_EQ(read.level_m.size(), kFrames);
+  EXPECT_EQ(read.level_m, track.level_m);
+  EXPECT_EQ(read.LevelAt(3), 0.45);
+  const NpzArrays arrays = SampleArrays(CameraModel::kPinhole);
+  EXPECT_THAT(ErrorOf(With(arrays, "world_level", {0, 0.45}, {2})), HasSubstr("world_level"));
+  EXPECT_THAT(ErrorOf(With(arrays, "world_level", std::vector<double>(kFrames, kNan), {kFrames})),
+              HasSubstr("world_level"));
+  track.level_m.conservativeResize(kFrames - 1);
+  EXPECT_THROW(WriteTrack(folder.File("short.npz"), track), std::invalid_argument);
+  track.level_m = Eigen::VectorXd::Constant(kFrames, 0.45);
+  track.world.reset();
+  EXPECT_THROW(WriteTrack(folder.File("no_world.npz"), track), std::invalid_argument);
+}
+
 TEST(TrackIo, PlaybackOfTheVideoIsKept) {
   EXPECT_EQ(Read(SampleArrays(CameraModel::kPinhole)).playback, VideoPlayback());
   const TemporaryFolder folder;

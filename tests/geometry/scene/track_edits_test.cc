@@ -266,6 +266,7 @@ TEST(ShapeTrack, PlacedInTheImageThePersonIsAsTallInIt) {
   Track track = ShortTrack();
   track.motion.poses.rightCols(track.motion.poses.cols() - 3).setZero();  // upright, so that stature is all of it
   track.world = WorldOverGround({0, -1, 0}, 1.4);
+  track.level_m = Eigen::VectorXd::Constant(track.num_frames(), 0.5);
   const Track in_scene = WithShape(BuiltinBody(), track, Tall());
   const Track in_image = WithShape(BuiltinBody(), track, Tall(), PersonPlacing::kInImage);
   const auto [top, bottom] = RowsOf(track, 0);
@@ -277,6 +278,8 @@ TEST(ShapeTrack, PlacedInTheImageThePersonIsAsTallInIt) {
   // The whole scene is larger or smaller by one factor.
   const double s = in_image.world->camera_height_m() / 1.4;
   EXPECT_GT(std::abs(s - 1), 0.02);
+  EXPECT_NEAR(in_image.LevelAt(0), 0.5 * s, 1e-12);
+  EXPECT_EQ(in_scene.LevelAt(0), 0.5);
   const Eigen::RowVector3d moved = in_image.motion.trans.row(0) - in_scene.motion.trans.row(0);
   for (int t = 1; t < track.num_frames(); ++t) {
     EXPECT_LT((in_image.motion.trans.row(t) - in_scene.motion.trans.row(t) - moved).norm(), 1e-12) << "by one step";

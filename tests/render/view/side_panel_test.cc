@@ -120,6 +120,24 @@ TEST(SidePanel, TheFloorBelowIsKeptInView) {
   EXPECT_LT(pixel.y(), kHeight);
 }
 
+TEST(SidePanel, TheFloorIsAtTheLevelUnderThePerson) {
+  SidePanelPerson person = At(0, 3);
+  for (MatrixX3d& joints : person.joints) joints.col(1).array() -= 0.45;
+  person.level_m = (Eigen::VectorXd(3) << 0, 0.45, 0).finished();
+  const SidePanel panel = Panel({person});
+  for (const int t : {0, 1}) {
+    const SidePanel::Picture picture = panel.At(0, t);
+    MatrixX3d lowest(1, 3);
+    lowest = person.joints[1].row(0);
+    lowest(0, 1) = person.joints[1].col(1).maxCoeff();
+    const Vector3d in_view = picture.view.Apply(lowest).row(0).transpose();
+    EXPECT_NEAR(picture.floor.up.dot(in_view - picture.floor.point), t == 1 ? 0.1 : 0.55, 1e-9) << t;
+  }
+  EXPECT_NE(panel.At(0, 0).image, panel.At(0, 1).image);
+  person.level_m.conservativeResize(2);
+  EXPECT_THROW(Panel({person}), std::invalid_argument);
+}
+
 TEST(SidePanel, ShadowIsStraightBelowABodyThatHovers) {
   const Camera camera = MakePinhole(200, 200, 150);
   MatrixX3d square(4, 3);  // 1 m above a floor that a camera sees from 1 m above the square
@@ -253,6 +271,13 @@ TEST(FloorContact, ALiftedBodyHasALineDownToTheFloorAndItsHeight) {
     return std::min({image.at(x - 1, row).red, image.at(x, row).red, image.at(x + 1, row).red}) < 130;
   };
   for (int y = static_cast<int>(from.y()) + 1; y < static_cast<int>(to.y()); ++y) EXPECT_TRUE(is_dark(y)) << y;
+  const auto red_beside = [&](double y, double across) {
+    return image.at(static_cast<int>(std::lround(from.x() + across)), static_cast<int>(std::lround(y))).red;
+  };
+  for (const double y : {from.y(), to.y()}) EXPECT_LT(red_beside(y, 0.25 * kCapPx), 150) << "a bar";
+  for (double across = 0.6 * kCapPx; across < 1.3 * kCapPx; across += 1) {
+    EXPECT_GT(red_beside(0.5 * (from.y() + to.y()), across), 190) << "the line is not a digit of the number";
+  }
   EXPECT_FALSE(is_dark(static_cast<int>(from.y()) - 3));
   EXPECT_FALSE(is_dark(static_cast<int>(to.y()) + 3));
 }

@@ -71,5 +71,56 @@ TEST(TrackWorld, PeopleShareOne) {
   EXPECT_EQ(WorldOfScene(SharedScene(), OneFrame()).source, WorldSource::kLevelCamera);
 }
 
+TEST(TrackWorld, LevelsAreThoseOfTheShotsOwnGround) {
+  GroundSummary ground;
+  ground.has_up = ground.has_plane = true;
+  ground.up = Eigen::Vector3d(0, -1, -0.1).normalized();
+  ground.camera_height_m = 1.7;
+  FrameGround floor, box, of_other_shot;
+  floor.up = box.up = ground.up;
+  floor.level_m = -1.7;
+  box.level_m = -1.25;
+  of_other_shot.level_m = -1;
+  std::vector<FrameData> frames(4);
+  frames[0].ground = &floor;
+  frames[1].ground = &of_other_shot;
+  EXPECT_EQ(LevelsOverGround(frames, ground).size(), 0) << "the ground alone";
+  frames[2].ground = &box;
+  EXPECT_TRUE(LevelsOverGround(frames, ground).isApprox(Eigen::Vector4d(0, 0, 0.45, 0), 1e-12));
+  ground.has_plane = false;
+  EXPECT_EQ(LevelsOverGround(frames, ground).size(), 0);
+}
+
+/// One frame of somebody whose pelvis is 1 m over a level of their own fit, whose ground is `ground_m` under a level
+/// camera.
+TrackSequenceResult Upright(double ground_m, double level_m) {
+  TrackSequenceResult person;
+  person.summary = Standing(0);
+  person.summary.ground.camera_height_m = ground_m;
+  person.track.joints = {(MatrixX3d(1, 3) << 0, ground_m - level_m - 1, 4).finished()};
+  person.track.motion.poses.setZero(1, 3);
+  person.track.motion.trans.setZero(1, 3);
+  person.track.frame_status = {FrameStatus::kTracked};
+  if (level_m != 0) person.track.level_m = Eigen::VectorXd::Constant(1, level_m);
+  return person;
+}
+
+TEST(TrackWorld, LevelsAreOverTheCommonGround) {
+  SharedScene scene;
+  scene.has_up = scene.ground.has_plane = true;
+  scene.ground.up = Eigen::Vector3d(0, -1, 0);
+  scene.ground.camera_height_m = 1.5;
+  scene.source = WorldSource::kPeople;
+  std::vector<TrackSequenceResult> people = {Upright(1.5, 0), Upright(1.45, 0), Upright(0.9, 0), Upright(1.45, 0.4)};
+  ShareWorld(scene, &people);
+  EXPECT_EQ(people[0].track.level_m.size(), 0);
+  EXPECT_EQ(people[1].track.level_m.size(), 0) << "5 cm are the error of a fit";
+  EXPECT_NEAR(people[2].track.LevelAt(0), 0.6, 1e-12) << "on a roof";
+  EXPECT_NEAR(people[3].track.LevelAt(0), 0.45, 1e-12);
+  scene.ground.has_plane = false;
+  ShareWorld(scene, &people);
+  EXPECT_EQ(people[3].track.level_m.size(), 0) << "the world's ground is then below the lowest joint";
+}
+
 }  // namespace
 }  // namespace bodyloom::track_world_test

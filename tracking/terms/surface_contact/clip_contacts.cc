@@ -35,6 +35,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kMinUpSigma = 1e-4;
+constexpr int kMinFallFrames = 5;  ///< of a short flight; a parabola leaves two of them
 constexpr double kLowestM = 0.02;  ///< points of a hovering body within this of its lowest one touch
 
 /// Heights of all points in all frames above each frame's ground; infinite where it is not known.
@@ -61,6 +62,21 @@ Heights Measure(const SequenceProblem& problem, const std::vector<ContactPoint>&
   return result;
 }
 
+/// True if the centre of mass falls while the body is off the ground in frames [begin, end), or if a stretch is too
+/// short to tell. `seconds`: from the frame before them to the frame after.
+bool FliesIn(const SequenceProblem& problem, const Matrix3Xd& centres, size_t begin, size_t end, bool has_before,
+             bool has_after, double seconds) {
+  const int first = static_cast<int>(has_before ? begin - 1 : begin),
+            last = static_cast<int>(has_after ? end : end - 1);
+  const int middle = static_cast<int>((begin + end - 1) / 2);
+  const bool is_short = seconds <= kShortFlight_s;
+  if (is_short && (seconds < kShowsFall_s || last - first + 1 < kMinFallFrames)) return true;
+  const CentreMotion motion =
+      is_short ? MotionOver(problem, centres, first, last, middle) : MotionAround(problem, centres, middle);
+  const double fall = is_short ? kMinShortFall : kMinFall;
+  return motion.found && motion.acceleration.dot(problem.frames[begin].ground->up) < -fall;
+}
+
 /// Frames of a body that is higher than it can be: not in flight, or higher than a flight between the ends of its
 /// stretch allows.
 std::vector<char> FindHovering(const SequenceProblem& problem, const CompiledPoint& centre_of_mass,
@@ -77,13 +93,11 @@ std::vector<char> FindHovering(const SequenceProblem& problem, const CompiledPoi
     size_t end = begin + 1;
     while (goes_on(end) && lowest[end] > kTouchingM) ++end;
     if (centres.size() == 0) centres = CentresOfMass(problem, centre_of_mass, num_threads);
-    const CentreMotion motion = MotionAround(problem, centres, static_cast<int>((begin + end - 1) / 2));
-    const bool falls = motion.found && motion.acceleration.dot(problem.frames[begin].ground->up) < -kMinFall;
     const std::vector<double>& at = problem.timestamps;
     const double from = at[goes_on(begin) ? begin - 1 : begin], to = at[goes_on(end) ? end : end - 1];
+    const bool falls = FliesIn(problem, centres, begin, end, goes_on(begin), goes_on(end), to - from);
     for (size_t t = begin; t < end; ++t) {
-      const bool flies =
-          (falls || to - from <= kShortFlight_s) && lowest[t] <= kTouchingM + RiseInFlight(at[t] - from, to - at[t]);
+      const bool flies = falls && lowest[t] <= kTouchingM + RiseInFlight(at[t] - from, to - at[t]);
       hovers[t] = !flies && lowest[t] <= kMaxHoverM ? 1 : 0;
     }
     begin = end;

@@ -3,10 +3,12 @@
 ///
 /// Heights are those of the states when a round starts. A point touches the ground in a frame in which it is within
 /// kTouchingM of it (points that are not of the soles: 2 cm) and moves by less than kTouchingSpeed. A stretch of frames
-/// in which the whole body is higher is a flight if its centre of mass accelerates downwards by more than kMinFall in
-/// the middle, or if it is shorter than kShortFlight_s, and then at most RiseInFlight() high. In other frames somebody
-/// hovers, and the lowest points touch, unless they are more than kMaxHoverM above the ground: then somebody stands on
-/// something else. Points within kNearM of the ground stay above it.
+/// in which the whole body is higher is a flight, at most RiseInFlight() high, if its centre of mass accelerates
+/// downwards by more than kMinFall within kCentreWindowS of the middle. One shorter than kShortFlight_s, when that time
+/// holds steps as well, if it does so by more than kMinShortFall in the stretch itself with the frames next to it; less
+/// than kShowsFall_s or five frames tell nothing, and are a flight. In other frames somebody hovers, and the lowest
+/// points touch, unless they are more than kMaxHoverM above the ground: then somebody stands on something else. Points
+/// within kNearM of the ground stay above it.
 ///
 /// Each round begins by fitting the grounds of a shot, parallel planes, to what touches them:
 ///   Σ w ρ((u · x − l ∓ d)² / σ²) + ‖(u − u₀) across u₀‖² / σ_u² + d² / kFeetApartM²  → min over u, d, every level l
@@ -32,13 +34,16 @@ struct TrackSequenceInput;
 struct TrackSequenceOptions;
 
 inline constexpr double kTouchingM = 0.06, kTouchingSpeed = 0.3, kMaxHoverM = 0.3, kNearM = 0.12;
-inline constexpr double kShortFlight_s = 0.4;  ///< whose fall the track is too smooth to show
-inline constexpr double kTouchSigmaM = 0.03;   ///< of the height of what touches: a track's errors, raised heels
-inline constexpr double kFeetApartM = 0.03;    ///< σ of d
+inline constexpr double kShortFlight_s = 0.4;
+inline constexpr double kTouchSigmaM = 0.03;  ///< of the height of what touches: a track's errors, raised heels
+inline constexpr double kFeetApartM = 0.03;   ///< σ of d
 /// Of the whole error of a touch, by depth and the pose of feet, which lasts as long as a posture. The scatter of
 /// heights alone, without what all frames are off together, lasts less (initialise/support_levels.cc).
 inline constexpr double kTouchErrorLasts_s = 1.5;
 inline constexpr double kMinFall = 2.5;  ///< m/s²; a quarter of g, because the track and the parabola are smooth
+/// m/s²: of AIST++'s tracks true hops have 9 to 14, raised heels that look like one 2 to 3 (docs/lab/world.md).
+inline constexpr double kMinShortFall = 4.9;
+inline constexpr double kShowsFall_s = 0.15;  ///< in which the centre of mass falls by 3 cm
 
 inline constexpr double kHoldSpreadM = 0.06, kMinHold_s = 0.2;
 

@@ -205,6 +205,21 @@ TEST(ClipContacts, FlightsAreLeftAloneAndHoveringIsNot) {
   for (int t = 8; t <= 13; ++t) EXPECT_GT(hovers.NumTouching(t), 0) << t;
 }
 
+/// Off the ground for 0.4 s a body rises by 20 cm. One that is 7 cm up for that time does not fly, and is pulled down;
+/// of three steps nobody can tell.
+TEST(ClipContacts, AShortFlightFallsToo) {
+  Clip hops(21, [](double s) { return s < 0.4 || s > 0.8 ? 0.0 : RiseInFlight(s - 0.4, 0.8 - s); });
+  hops.Start();
+  for (int t = 7; t <= 11; ++t) EXPECT_EQ(hops.NumTouching(t), 0) << t;
+  const auto raised = [](double until_s) { return [=](double s) { return s < 0.41 || s > until_s ? 0.0 : 0.07; }; };
+  Clip hovers(21, raised(0.79));
+  hovers.Start();
+  for (int t = 7; t <= 11; ++t) EXPECT_GT(hovers.NumTouching(t), 0) << t;
+  Clip too_short(21, raised(0.55));
+  too_short.Start();
+  for (int t = 7; t <= 8; ++t) EXPECT_EQ(too_short.NumTouching(t), 0) << t;
+}
+
 TEST(ClipContacts, SomebodyHalfAMetreUpStandsOnSomethingElse) {
   Clip clip(15, [](double) { return 0.5; });
   clip.Start();
