@@ -127,9 +127,9 @@ void UseCameraMotion(const TrackSettings& request, const BackgroundTracks& backg
   report->found = true;
   report->goes = goes;
   report->turned_deg = motion.turned_deg;
-  report->sigma_deg = *std::max_element(motion.sigma_rad.begin(), motion.sigma_rad.end()) / kDegree;
+  report->sigma_deg = *std::max_element(motion.of_frames.rad.begin(), motion.of_frames.rad.end()) / kDegree;
   report->background_points = static_cast<int>(motion.points.size());
-  if (goes) report->sigma_place = Percentile(motion.sigma_place, 50) / motion.extent;
+  if (goes) report->sigma_place = Percentile(motion.of_frames.place, 50) / motion.extent;
   if (scene->camera_knowledge == CameraKnowledge::kUnknownFocal) {
     scene->focal_of_motion =
         FocalPrior{.log_mean = motion.log_focal, .log_sigma = std::max(kLeastFocalSigma, motion.log_focal_sigma)};

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/camera_motion/background_structure.h"
 
-#include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 #include <ceres/sphere_manifold.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <opencv2/calib3d.hpp>
 #include <optional>
 #include <unordered_map>
@@ -23,6 +20,7 @@
 #include "geometry/base/units.h"
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
+#include "tracking/camera_motion/bundle_covariance.h"
 #include "tracking/camera_motion/projected_point.h"
 #include "tracking/camera_motion/turning_camera.h"
 
@@ -105,9 +103,8 @@ struct StartPair {
   double score = 0;
 };
 
-/// The second camera's place of a pair of views; the score is the share of the points that the essential matrix
-/// explains, times the share of an ample angle that the rays make.
-std::optional<StartPair> PlaceOfPair(const CommonPoints& common, double focal, double small_px) {
+/// PlaceOfPair() by an essential matrix of this method of OpenCV.
+std::optional<StartPair> PlaceByEssential(const CommonPoints& common, double focal, double small_px, int method) {
   std::vector<cv::Point2d> first, second;
   for (size_t i = 0; i < common.first.size(); ++i) {
     first.emplace_back(common.first[i].x(), common.first[i].y());
@@ -115,9 +112,14 @@ std::optional<StartPair> PlaceOfPair(const CommonPoints& common, double focal, d
   }
   const cv::Matx33d pinhole(focal, 0, 0, 0, focal, 0, 0, 0, 1);
   cv::Mat good;
-  const cv::Mat essential =
-      cv::findEssentialMat(first, second, pinhole, cv::RANSAC, 0.99, small_px, kMostSamples, good);
+  const cv::Mat essential = cv::findEssentialMat(first, second, pinhole, method, 0.99, small_px, kMostSamples, good);
   if (essential.rows != 3 || essential.cols != 3) return std::nullopt;
+  const Matrix3d E = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(essential.ptr<double>());
+  const double good2 = std::pow(small_px / focal, 2);
+  for (size_t i = 0; i < common.size(); ++i) {
+    const bool agrees = EpipolarDistance2(E, common.first[i] / focal, common.second[i] / focal) < good2;
+    good.at<uint8_t>(static_cast<int>(i)) = agrees ? 1 : 0;
+  }
   cv::Mat rotation, translation;
   const int in_front =
       cv::recoverPose(essential, first, second, pinhole, rotation, translation, kFarthestInPairs, good);
@@ -144,6 +146,16 @@ std::optional<StartPair> PlaceOfPair(const CommonPoints& common, double focal, d
   return pair;
 }
 
+/// The second camera's place of a pair of views; the score is the share of the points that the essential matrix
+/// explains, times the share of an ample angle that the rays make. The matrix is that of least median error: points
+/// are followed to a tenth of a small pixel, and within a whole one of all of them there are matrices whose scene is
+/// inside out, near things far away and the path turned round. Of points on a plane the median may be that of another
+/// matrix, without a place; then it is one that has most points within a small pixel.
+std::optional<StartPair> PlaceOfPair(const CommonPoints& common, double focal, double small_px) {
+  const std::optional<StartPair> pair = PlaceByEssential(common, focal, small_px, cv::LMEDS);
+  return pair ? pair : PlaceByEssential(common, focal, small_px, cv::RANSAC);
+}
+
 /// The state of a reconstruction, copied to try starts.
 struct Reconstruction {
   std::vector<View> views;
@@ -151,61 +163,6 @@ struct Reconstruction {
   double log_focal = 0, log_focal_sigma = 0;
   [[nodiscard]] double focal() const { return std::exp(log_focal); }
 };
-
-/// Standard deviations of cameras and log f from the Jacobian at the solution, the points eliminated.
-/// `cameras`: blocks of the held-apart unknowns; `points`: blocks of three.
-std::vector<MatrixXd> CovariancesOf(ceres::Problem* problem, const std::vector<double*>& cameras,
-                                    const std::vector<double*>& points, double variance, int num_threads) {
-  std::vector<MatrixXd> covariances;
-  ceres::Problem::EvaluateOptions evaluate;
-  evaluate.parameter_blocks = cameras;
-  evaluate.parameter_blocks.insert(evaluate.parameter_blocks.end(), points.begin(), points.end());
-  evaluate.num_threads = num_threads;
-  ceres::CRSMatrix jacobian;
-  if (!problem->Evaluate(evaluate, nullptr, nullptr, nullptr, &jacobian)) return covariances;
-  std::vector<int> sizes;
-  for (const double* block : cameras) sizes.push_back(problem->ParameterBlockTangentSize(block));
-  const int columns = std::accumulate(sizes.begin(), sizes.end(), 0);
-  MatrixXd normal = MatrixXd::Identity(columns, columns) * 1e-9;
-  std::vector<Matrix3d> own(points.size(), Matrix3d::Identity() * 1e-9);
-  std::vector<std::map<int, Vector3d>> shared(points.size());  // column of the cameras, by the point
-  for (int row = 0; row < jacobian.num_rows; ++row) {
-    const int begin = jacobian.rows[row], end = jacobian.rows[row + 1];
-    Vector3d by_point = Vector3d::Zero();
-    int point = -1;
-    for (int i = begin; i < end; ++i) {
-      if (jacobian.cols[i] < columns) continue;
-      point = (jacobian.cols[i] - columns) / 3;
-      by_point[(jacobian.cols[i] - columns) % 3] = jacobian.values[i];
-    }
-    if (point >= 0) own[size_t(point)] += by_point * by_point.transpose();
-    for (int i = begin; i < end; ++i) {
-      if (jacobian.cols[i] >= columns) continue;
-      for (int j = begin; j < end; ++j) {
-        if (jacobian.cols[j] < columns)
-          normal(jacobian.cols[i], jacobian.cols[j]) += jacobian.values[i] * jacobian.values[j];
-      }
-      if (point < 0) continue;
-      const auto [at, is_new] = shared[size_t(point)].emplace(jacobian.cols[i], Vector3d::Zero());
-      at->second += jacobian.values[i] * by_point;
-    }
-  }
-  for (size_t p = 0; p < points.size(); ++p) {
-    const Matrix3d inverse = own[p].inverse();
-    const std::vector<std::pair<int, Vector3d>> by(shared[p].begin(), shared[p].end());
-    for (const auto& [i, by_i] : by) {
-      const Vector3d solved = inverse * by_i;
-      for (const auto& [j, by_j] : by) normal(j, i) -= solved.dot(by_j);
-    }
-  }
-  const MatrixXd inverse = normal.ldlt().solve(MatrixXd::Identity(columns, columns));
-  int at = 0;
-  for (const int size : sizes) {
-    covariances.emplace_back(variance * inverse.block(at, at, size, size));
-    at += size;
-  }
-  return covariances;
-}
 
 class StructureSolve {
  public:
@@ -667,12 +624,8 @@ class StructureSolve {
       views.push_back(v);
     }
     if (!options_.focal_known) blocks.push_back(&now_.log_focal);
-    // The points' own scatter replaces the assumed σ; each point takes three numbers, each camera six.
-    const double numbers =
-        2.0 * double(bundle.residuals) - 3.0 * double(bundle.points.size()) - 6.0 * double(views.size());
-    const double variance = std::max(0.05, 2 * cost / std::max(1.0, numbers));
     const std::vector<MatrixXd> covariances =
-        CovariancesOf(&bundle.problem, blocks, bundle.points, variance, options_.num_threads);
+        BundleCovariances(&bundle.problem, {blocks, bundle.points}, options_.num_threads);
     if (covariances.size() != blocks.size()) return false;
     View& first = now_.views[keys.front()];
     first.sigma_rad = first.sigma_place = 0;  // it is held

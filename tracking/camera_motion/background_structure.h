@@ -7,11 +7,12 @@
 ///                                                                  pixels long
 /// over rotations R and centres o of the key frames, points x and f is sought by Ceres (Schur complement, dense or
 /// sparse). Key frames are anchors and frames in which the points have gone 12 small pixels or a quarter of a second
-/// since the last one, 400 at most, evenly thinned. Start: essential matrices (five points, random sample consensus) of
-/// pairs of key frames with most parallax, each tried with its key frames in between, and at several focal lengths if
-/// it is not known; the one of least cost goes on. Key frames with most points that are placed come next, one at a
-/// time; the latest twelve are adjusted every fifth key frame, all of them when a quarter has been added. All other
-/// frames are placed by the points.
+/// since the last one, 400 at most, evenly thinned. Start: essential matrices (five points, least median of errors; if
+/// that gives none, most points within a small pixel) of pairs of key frames with most parallax, each tried with its
+/// key frames in between, and at several focal lengths if it is not known; the one of least cost goes on. Key frames
+/// with most points that are placed come next, one at a time; the latest twelve are adjusted every fifth key frame, all
+/// of them when a quarter has been added. All other frames are placed by the points. Deviations are those of the
+/// points' scatter, whose errors last from frame to frame (bundle_covariance.h).
 ///
 /// The scene is the camera's frame at first, and its unit the median distance of the points from the camera: pictures
 /// do not tell the length of the path.

@@ -15,6 +15,7 @@
 #include "geometry/base/units.h"
 #include "geometry/math/rotation.h"
 #include "tracking/camera_motion/background_structure.h"
+#include "tracking/camera_motion/projected_point.h"
 #include "tracking/camera_motion/turning_camera.h"
 
 namespace bodyloom {
@@ -152,13 +153,6 @@ Matrix3d EpipolarOf(const std::vector<Vector2d>& from, const std::vector<Vector2
   Vector3d values = svd.singularValues();
   values[2] = 0;
   return svd.matrixU() * values.asDiagonal() * svd.matrixV().transpose();
-}
-
-/// Sampson's distance², of points in the same unit.
-double EpipolarDistance2(const Matrix3d& F, const Vector2d& from, const Vector2d& to) {
-  const Vector3d line_to = F * from.homogeneous(), line_from = F.transpose() * to.homogeneous();
-  const double e = to.homogeneous().dot(line_to);
-  return e * e / std::max(1e-30, line_to.head<2>().squaredNorm() + line_from.head<2>().squaredNorm());
 }
 
 /// Σ min(e²/σ², 2 (4 − d)) of the best epipolar geometry of samples of eight points, refined on those it explains.
@@ -308,6 +302,7 @@ void TakePath(const BackgroundTracks& tracks, const PlacedFrames& placed, Camera
     hold(&motion->sigma_rad, true, turns * held_s / 2);
     hold(&motion->sigma_place, true, goes * held_s / 2);
   }
+  motion->of_frames = SigmasAt(tracks.timestamps, path, {motion->sigma_rad, motion->sigma_place});
 }
 
 double TurnedDeg(const std::vector<CameraPose>& poses) {

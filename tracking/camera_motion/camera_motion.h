@@ -24,6 +24,7 @@
 
 #include "geometry/scene/background_tracks.h"
 #include "geometry/scene/camera_path.h"
+#include "tracking/camera_motion/unseen_frames.h"
 #include "tracking/problem/camera_knowledge.h"
 
 namespace bodyloom {
@@ -52,6 +53,7 @@ struct CameraMotion {
   CameraPath path;
   std::vector<double> sigma_rad;        ///< of each pose, standard deviation about an axis
   std::vector<double> sigma_place;      ///< of a moving camera: of each centre along an axis, units
+  PoseSigmas of_frames;                 ///< of the path's poses in every frame of the clip, also where none was seen
   double turned_deg = 0;                ///< largest rotation from the first frame
   double extent = 0;                    ///< of a moving camera: largest distance from the first frame's place, units
   std::vector<Eigen::Vector3d> points;  ///< of a moving camera: the background in the first frame's axes, units

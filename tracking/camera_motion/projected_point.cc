@@ -66,6 +66,12 @@ double ProjectionDistance(const CameraPlace& camera, double focal, const PointIn
   return (focal * in_camera.head<2>() / in_camera.z() - seen.pixel).norm();
 }
 
+double EpipolarDistance2(const Matrix3d& F, const Vector2d& from, const Vector2d& to) {
+  const Vector3d line_to = F * from.homogeneous(), line_from = F.transpose() * to.homogeneous();
+  const double e = to.homogeneous().dot(line_to);
+  return e * e / std::max(1e-30, line_to.head<2>().squaredNorm() + line_from.head<2>().squaredNorm());
+}
+
 std::optional<FittedPlace> FitCameraPlace(std::span<const PointInPicture> seen, double focal, double sigma_px,
                                           const CameraPlace& start) {
   if (seen.size() < size_t(kFewestGood)) return std::nullopt;

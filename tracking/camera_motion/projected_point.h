@@ -40,6 +40,9 @@ struct PointInPicture {
 /// Distance of a point's projection from its pixel; infinite behind the camera.
 double ProjectionDistance(const CameraPlace& camera, double focal, const PointInPicture& seen);
 
+/// Sampson's distance² of a pair of points from the epipolar geometry xᵀ_to F x_from = 0, in the points' unit.
+double EpipolarDistance2(const Eigen::Matrix3d& F, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
+
 struct FittedPlace {
   CameraPlace place;
   /// Of the increments of w and the centre, for pixels with the deviation that the good ones have.

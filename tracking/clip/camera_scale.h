@@ -24,7 +24,8 @@
 /// keeps its direction:
 ///   σ_log = 0.05 ‖mean c'‖ / (s mean ‖c'‖²)     c': the camera's velocity at scale 1; part of the result's σ
 ///
-/// If neither feet nor floor (floor_scale.h) tell the scale, the person is taken to stay in one place (ScaleByPlace()).
+/// If neither feet nor floor (ScaleByFloor()) tell the scale, the person is taken to stay in one place
+/// (ScaleByPlace()).
 #pragma once
 
 #include <Eigen/Core>
@@ -34,6 +35,7 @@
 #include <vector>
 
 #include "geometry/scene/camera.h"
+#include "tracking/camera_motion/points_floor.h"
 #include "tracking/initialise/ground_plane.h"
 
 namespace bodyloom {
@@ -71,6 +73,19 @@ CameraScale EstimateCameraScale(std::span<const std::vector<std::array<FootPlace
 /// `places_m`: one a frame, of the pelvis; the other numbers as above (checked).
 CameraScale ScaleByPlace(std::span<const Eigen::Vector3d> places_m, std::span<const double> timestamps,
                          const std::vector<char>& cut_before, std::span<const CameraPose> unit_path);
+
+/// The scale from the person's feet on a floor among the points of the background.
+///
+/// The camera is u_f units above the floor and, by the lowest point of the feet, m_f = a − up · R_fᵀ x_f metres, a: the
+/// point's height on a foot that rests. So s_f = m_f / u_f in every frame in which a foot is down, whether it stands,
+/// rolls or slides and whatever the camera does; s is their mode (Geman–McClure, c = 1, σ of a frame 4 %).
+///
+/// `points` as for EstimateCameraScale(); `heights_m`: of each of them on a foot that rests. Found when four tenths of
+/// the frames with a foot, over 0.4 s at least, agree within 10 %. σ holds the floor's and that of the frames, not that
+/// of the body's size. Throws std::invalid_argument for numbers that differ.
+CameraScale ScaleByFloor(std::span<const std::vector<std::array<FootPlace, 2>>> points,
+                         std::span<const double> heights_m, std::span<const double> timestamps,
+                         std::span<const CameraPose> unit_path, const PointsFloor& floor);
 
 /// One scale from that of the feet and that of the floor, either of which may not be found: the mean of log s by 1/σ².
 /// Its σ also holds that of the body's size, 4 %, an error of both.

@@ -16,7 +16,6 @@
 #include "geometry/scene/camera_path.h"
 #include "tracking/clip/camera_scale.h"
 #include "tracking/clip/clip_views.h"
-#include "tracking/clip/floor_scale.h"
 #include "tracking/clip/term_kinds.h"
 #include "tracking/clip/track_plan.h"
 #include "tracking/clip/track_result.h"
@@ -324,13 +323,7 @@ void ClipFit::FitCameraScale(SequenceProblem* coarse) {
     }
   }
   CameraScale scale = EstimateCameraScale(points, coarse->timestamps, coarse->cut_before, unit_path);
-  CameraScale by_floor;
-  if (input_.background_points != nullptr) {
-    if (const UpEstimate up = UpInScene(lifted_.frames, problem_.frames); up.found) {
-      const PointsFloor floor = FindPointsFloor(*input_.background_points, up.up);
-      by_floor = ScaleByFloor(points, heights_m, coarse->timestamps, unit_path, floor);
-    }
-  }
+  const CameraScale by_floor = ScaleByFloor(points, heights_m, coarse->timestamps, unit_path, FloorOfPoints());
   if (!scale.found && !by_floor.found) {
     std::vector<Eigen::Vector3d> pelvises;
     const Eigen::Vector3d at_rest = input_.body->RestJoints(coarse->betas).row(0).transpose();
@@ -346,6 +339,18 @@ void ClipFit::FitCameraScale(SequenceProblem* coarse) {
   summary.scale_m = scale.found ? scale.scale_m : 0;
   summary.sigma_m = scale.found ? scale.sigma_m : 0;
   ScaleCameraPath(summary.scale_m, coarse);
+}
+
+const PointsFloor& ClipFit::FloorOfPoints() {
+  if (!points_floor_) {
+    points_floor_.emplace();
+    if (input_.background_points != nullptr) {
+      if (const UpEstimate up = UpInScene(lifted_.frames, problem_.frames); up.found) {
+        points_floor_ = FindPointsFloor(*input_.background_points, up.up);
+      }
+    }
+  }
+  return *points_floor_;
 }
 
 void ClipFit::ScaleCameraPath(double scale_m, SequenceProblem* coarse) {

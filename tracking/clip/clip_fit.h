@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/base/stopwatch.h"
+#include "tracking/camera_motion/points_floor.h"
 #include "tracking/clip/track_stages.h"
 #include "tracking/initialise/lifted_landmarks.h"
 #include "tracking/initialise/lifted_start.h"
@@ -63,6 +64,8 @@ class ClipFit {
   /// Estimates the scale of the camera's path, if not known, from the current coarse solution, and applies it to all
   /// frames; the person's position in each camera frame stays the same.
   void FitCameraScale(SequenceProblem* coarse);
+  /// The floor among the points of the background, whose place does not depend on the path's scale; found once.
+  const PointsFloor& FloorOfPoints();
   void ScaleCameraPath(double scale_m, SequenceProblem* coarse);
   /// Fixes an unknown focal length at the estimate that joins the coarse solution and the prior; the person moves along
   /// the viewing rays with it. Only with 2D joints and the lifter, without dense keypoints: the errors of these fits
@@ -92,6 +95,7 @@ class ClipFit {
   ObservedLandmarks landmarks_;
   double stature_m_ = 0;                 ///< AssumedStature()
   std::vector<CameraPose> camera_path_;  ///< T, scaled, of a camera that moves; or empty
+  std::optional<PointsFloor> points_floor_;
   SequenceProblem problem_;
   LiftedStart lifted_;
   LiftedLandmarks lifted_landmarks_;

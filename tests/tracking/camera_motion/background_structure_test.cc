@@ -165,39 +165,51 @@ TEST(BackgroundStructure, AWallAloneIsEnough) {
   }
 }
 
+/// Errors over their stated deviations, root mean square over frames and seeds.
+struct StatedErrors {
+  double turned = 0, placed = 0;
+};
+StatedErrors ErrorsOverStated(const NamedPath& path, double noise_lasts_s, int seeds) {
+  double turned = 0, placed = 0;
+  int count = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    SyntheticBackground scene = Room();
+    scene.pose = path.pose;
+    scene.noise_px = 0.3;
+    scene.noise_lasts_s = noise_lasts_s;
+    scene.seed = static_cast<uint64_t>(seed);
+    const BackgroundStructure structure = ReconstructBackground(TracksOf(scene), KnownFocal(scene));
+    EXPECT_TRUE(structure.solved) << path.name << ": " << structure.why;
+    // The farthest camera's distance is held: it tells the unit.
+    size_t farthest = 0;
+    for (size_t i = 0; i < structure.frames.size(); ++i) {
+      const auto far = [&](size_t n) { return CentreOf(structure.camera_from_first[n]).norm(); };
+      if (far(i) > far(farthest)) farthest = i;
+    }
+    const CameraPose first = scene.pose(structure.frames.front() / scene.fps);
+    const auto truth = [&](size_t i) { return Compose(scene.pose(structure.frames[i] / scene.fps), Inverse(first)); };
+    const double unit = CentreOf(truth(farthest)).norm() / CentreOf(structure.camera_from_first[farthest]).norm();
+    for (size_t i = 1; i < structure.frames.size(); ++i) {
+      const CameraPose& pose = structure.camera_from_first[i];
+      const double off = RotationAngleBetween(truth(i).camera_from_world_rotation, pose.camera_from_world_rotation);
+      const double away = (CentreOf(truth(i)) / unit - CentreOf(pose)).norm();
+      turned += off * off / (3 * structure.sigma_rad[i] * structure.sigma_rad[i]);
+      placed += away * away / (3 * structure.sigma_place[i] * structure.sigma_place[i]);
+      ++count;
+    }
+  }
+  return {std::sqrt(turned / count), std::sqrt(placed / count)};
+}
+
 TEST(BackgroundStructure, StatedDeviationsAreThoseOfTheErrors) {
   for (const NamedPath& path : kPaths) {
-    double turned = 0, placed = 0;
-    int count = 0;
-    for (uint64_t seed = 1; seed <= 4; ++seed) {
-      SyntheticBackground scene = Room();
-      scene.pose = path.pose;
-      scene.noise_px = 0.3;
-      scene.seed = seed;
-      const BackgroundStructure structure = ReconstructBackground(TracksOf(scene), KnownFocal(scene));
-      ASSERT_TRUE(structure.solved) << path.name << ": " << structure.why;
-      // The farthest camera's distance is held: it tells the unit.
-      size_t farthest = 0;
-      for (size_t i = 0; i < structure.frames.size(); ++i) {
-        const auto far = [&](size_t n) { return CentreOf(structure.camera_from_first[n]).norm(); };
-        if (far(i) > far(farthest)) farthest = i;
-      }
-      const CameraPose first = scene.pose(structure.frames.front() / scene.fps);
-      const auto truth = [&](size_t i) { return Compose(scene.pose(structure.frames[i] / scene.fps), Inverse(first)); };
-      const double unit = CentreOf(truth(farthest)).norm() / CentreOf(structure.camera_from_first[farthest]).norm();
-      for (size_t i = 1; i < structure.frames.size(); ++i) {
-        const CameraPose& pose = structure.camera_from_first[i];
-        const double off = RotationAngleBetween(truth(i).camera_from_world_rotation, pose.camera_from_world_rotation);
-        const double away = (CentreOf(truth(i)) / unit - CentreOf(pose)).norm();
-        turned += off * off / (3 * structure.sigma_rad[i] * structure.sigma_rad[i]);
-        placed += away * away / (3 * structure.sigma_place[i] * structure.sigma_place[i]);
-        ++count;
-      }
+    for (const double noise_lasts_s : {0.0, 0.5}) {
+      const StatedErrors errors = ErrorsOverStated(path, noise_lasts_s, 3);
+      EXPECT_GT(errors.turned, 0.5) << path.name << ", " << noise_lasts_s;
+      EXPECT_LT(errors.turned, 1.6) << path.name << ", " << noise_lasts_s;
+      EXPECT_GT(errors.placed, 0.5) << path.name << ", " << noise_lasts_s;
+      EXPECT_LT(errors.placed, 1.6) << path.name << ", " << noise_lasts_s;
     }
-    EXPECT_GT(std::sqrt(turned / count), 0.4) << path.name;
-    EXPECT_LT(std::sqrt(turned / count), 2) << path.name;
-    EXPECT_GT(std::sqrt(placed / count), 0.4) << path.name;
-    EXPECT_LT(std::sqrt(placed / count), 2) << path.name;
   }
 }
 
@@ -264,6 +276,24 @@ TEST(BackgroundStructure, ACameraThatGoesTowardsThingsDoesNotZoom) {
   EXPECT_TRUE(motion.has_path()) << motion.why;
   EXPECT_EQ(motion.zoom, 1);
   EXPECT_NE(motion.why.find("rotations and a zoom explain 98 %"), std::string::npos) << motion.why;
+}
+
+TEST(BackgroundStructure, FramesThatAreNotSeenHaveALargerDeviation) {
+  SyntheticBackground scene = Room();
+  scene.noise_px = 0.3;
+  scene.pose = HandHeld;
+  BackgroundTracks tracks = TracksOf(scene);
+  const auto is_blank = [](int frame) { return frame > 42 && frame < 57; };
+  for (BackgroundTracks::Anchor& anchor : tracks.anchors) {
+    std::erase_if(anchor.sights, [&](const BackgroundTracks::Sight& sight) { return is_blank(sight.frame); });
+  }
+  const CameraMotion motion = FindCameraMotion(tracks, {.focal = KnownFocal(scene).focal, .focal_known = true});
+  ASSERT_TRUE(motion.has_path()) << motion.why;
+  ASSERT_EQ(motion.of_frames.rad.size(), size_t(scene.frames));
+  ASSERT_EQ(motion.of_frames.place.size(), size_t(scene.frames));
+  EXPECT_GT(motion.of_frames.place[50], 5 * motion.of_frames.place[40]);
+  EXPECT_GT(motion.of_frames.rad[50], 5 * motion.of_frames.rad[40]);
+  EXPECT_GT(motion.of_frames.rad[50], 2 * motion.of_frames.rad[44]);
 }
 
 TEST(BackgroundStructure, AnEndThatIsNotSeenHasALargerDeviation) {

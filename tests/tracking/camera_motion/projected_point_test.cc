@@ -160,5 +160,12 @@ TEST(FitPoint, FarPointsStayInReachAndRaysThatDoNotMeetHaveNone) {
   EXPECT_FALSE(FitPoint(std::vector<PixelOfCamera>{{first, {30, 40}}}, kFocal, 0.3, 1.5, 100));
 }
 
+TEST(EpipolarDistance2, OfAStepAsideIsSharedByBothPictures) {
+  // The camera steps along x: both epipolar lines are rows, and each picture's point goes half of the way to meet.
+  const Eigen::Matrix3d F = 7 * Skew(Vector3d::UnitX());
+  EXPECT_NEAR(EpipolarDistance2(F, {0.3, 0.2}, {-0.4, 0.2}), 0, 1e-30);
+  EXPECT_NEAR(EpipolarDistance2(F, {0.3, 0.2}, {-0.4, 0.26}), 0.06 * 0.06 / 2, 1e-12);
+}
+
 }  // namespace
 }  // namespace bodyloom::projected_point_test

@@ -24,9 +24,10 @@ struct SyntheticBackground {
   double nearest_m = 1e6, farthest_m = 1e6;  ///< from the first camera; equal: a sphere
   bool flat = false;  ///< all that is before the first camera on a wall across its view, at nearest_m
   double noise_px = 0.2;
-  double wanderers = 0;  ///< share of the points that move by themselves
-  double overlay = 0;    ///< share of the points that stay in place in the picture
-  int points = 3000;     ///< over the whole sphere
+  double noise_lasts_s = 0;  ///< time constant of a point's noise; 0: independent from frame to frame
+  double wanderers = 0;      ///< share of the points that move by themselves
+  double overlay = 0;        ///< share of the points that stay in place in the picture
+  int points = 3000;         ///< over the whole sphere
   int frames_of_anchor = 1000;
   uint64_t seed = 1;
 };
@@ -39,6 +40,8 @@ inline BackgroundTracks TracksOf(const SyntheticBackground& scene) {
     Eigen::Vector3d at;
     Eigen::Vector2d overlay, wander;
     bool is_overlay, wanders;
+    Eigen::Vector2d noise;
+    double noise_s = -1e9;  ///< time of the noise
   };
   std::vector<Point> points;
   for (int i = 0; i < scene.points; ++i) {
@@ -52,7 +55,7 @@ inline BackgroundTracks TracksOf(const SyntheticBackground& scene) {
     const double along = normal(random), across = normal(random);
     point.wander = 60 * Eigen::Vector2d(along, across);
   }
-  const auto project = [&](const Point& point, double t, Eigen::Vector2d* pixel) {
+  const auto project = [&](Point& point, double t, Eigen::Vector2d* pixel) {
     const CameraPose pose = scene.pose(t);
     const Eigen::Vector3d p = pose.camera_from_world_rotation * point.at + pose.camera_from_world_translation;
     if (!(p.z() > 0.1)) return false;
@@ -60,7 +63,16 @@ inline BackgroundTracks TracksOf(const SyntheticBackground& scene) {
     *pixel = centre + scene.focal_px * scene.zoom(t) * p.head<2>() / p.z();
     if (point.wanders) *pixel += point.wander * std::sin(2 * t + point.at.normalized().x());
     const double noise_x = normal(random), noise_y = normal(random);
-    *pixel += scene.noise_px * Eigen::Vector2d(noise_x, noise_y);
+    const Eigen::Vector2d fresh(noise_x, noise_y);
+    if (scene.noise_lasts_s > 0) {
+      const double kept = std::exp(-(t - point.noise_s) / scene.noise_lasts_s);
+      point.noise =
+          point.noise_s < 0 ? fresh : Eigen::Vector2d(kept * point.noise + std::sqrt(1 - kept * kept) * fresh);
+      point.noise_s = t;
+    } else {
+      point.noise = fresh;
+    }
+    *pixel += scene.noise_px * point.noise;
     return pixel->x() > 0 && pixel->y() > 0 && pixel->x() < scene.width - 1 && pixel->y() < scene.height - 1;
   };
   BackgroundTracks tracks;

@@ -9,7 +9,6 @@
 
 #include "geometry/math/rotation.h"
 #include "geometry/scene/camera_path.h"
-#include "tracking/clip/floor_scale.h"
 
 namespace bodyloom::camera_scale_test {
 namespace {
