@@ -12,8 +12,9 @@ usage: turned_clips.py BODYLOOM POSE2SIM CLIPS [--turns tremor-1.5 ...] [--joint
 The clips are played forwards and backwards, and so is the truth. A turned camera's scene is the frame of its first
 picture, which is not turned: in it the track is one of the original's camera, and is scored as such (`bodyloom
 evaluate --view cam_0N`: g, WA and tilt in the room, PA). Modes: `found` searches for the motion, `still` does not, and
-`path` is told the true one, `no-lines` searches and leaves the lines of the picture out. --joints: `video`, by `bodyloom run`, or `trial`, the trial's own 2D joints, which are
-turned exactly, by `bodyloom track`. rms: of the rotations found, degrees; focal: of the track, over the original's.
+`path` is told the true one, `no-lines` searches and leaves the lines of the picture out. --joints: `video`, by
+`bodyloom run`, or `trial`, the trial's own 2D joints, which are turned exactly, by `bodyloom track`, which tells the
+lines as well. rms: of the rotations found, degrees; focal: of the track, over the original's.
 """
 import argparse
 import json
@@ -47,7 +48,7 @@ def played_back_and_forth(pose2sim, frames, out):
 
 
 def turned_joints(pose2sim, camera, clip, true_path, out):
-    """The trial's joints in the pixels of the turned clip, one file a frame; those that leave the picture are unseen."""
+    """The trial's joints in the turned clip's pixels, one file a frame; those that leave the picture are unseen."""
     width, height = json.loads(subprocess.run(
         ["ffprobe", "-v", "error", "-select_streams", "v", "-show_entries", "stream=width,height", "-of", "json", clip],
         check=True, capture_output=True).stdout)["streams"][0].values()
@@ -141,7 +142,8 @@ def main():
                 values = json.loads(errors.read_text(encoding="utf-8"))["values"]
                 summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
                 motion = summary.get("camera_path", {}).get("motion", "not looked for").split(":")[0]
-                lines = next((step["why"] for step in summary.get("plan", []) if step["what"] == "vertical from lines"),
+                lines = next((step["why"] for step in summary.get("ran", []) + summary.get("skipped", [])
+                              if step["what"] == "vertical from lines"),
                              "")
                 rms = rotation_rms(found_path, true_path) if found_path.exists() else np.nan
                 print(f"{clip.stem:20} {mode:6} " + " ".join(f"{values[name]:6.1f}" for name in VALUES) +
