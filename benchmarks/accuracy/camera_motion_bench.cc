@@ -2,16 +2,18 @@
 /// bodyloom_bench_camera_motion: videos of cameras that stand, turned by known rotations, and what is found of them.
 ///
 ///   bodyloom_bench_camera_motion --clips FILE,… [--turns still,tremor-0.5,tremor-1.5,tremor-3,pan,zoom] [--seconds 10]
-///                                [--focal PIXELS] [--known-focal 0] [--write FOLDER] [--json F]
+///                                [--focal PIXELS] [--known-focal 0] [--write FOLDER] [--measure 1] [--json F]
 ///
 /// A clip is played forwards and backwards until `seconds` are full, and seen by a camera of the same size that turns:
 /// pixels by H = K(t) R(t) K⁻¹, the picture mirrored beyond its borders, which is a scene at infinity like any other.
 ///   still        not turned; neither resampled
 ///   tremor-N     smooth drifts of N degrees about each axis, standard deviation, time constant 0.6 s
-///   pan          20 degrees to either side of the first direction in 4 s, with a tremor of 0.3 degrees
+///   pan-N        N degrees to either side of the first direction in 4 s, with a tremor of 0.3 degrees; pan: 20
 ///   zoom         the focal length grows by 1.3 and back, with a tremor of 0.5 degrees
+/// Rotations are those from the first frame, which is the original's.
 /// --focal: of the clip, 0: the prior's mean. People are found by BlazePose in the turned frames and masked.
-/// --write: the turned videos, and beside each the true path and the one found.
+/// --write: the turned videos, and beside each the true path and the one found; --measure 0: the clip and its true path
+/// alone.
 /// moves: 0 unknown, 1 still, 2 turning, 3 moving. rms_deg: of the rotations found against the true ones, relative to
 /// the first frame. focal_ratio: found over true. z: rms of the rotation's error over the stated σ. ms: processor time
 /// a frame of following the background; solve_ms: of the solve of the whole clip.
@@ -48,7 +50,9 @@ struct Turn {
 Turn TurnNamed(const std::string& name, const std::vector<double>& times, uint64_t seed) {
   double tremor = 0;
   if (name.starts_with("tremor-")) tremor = std::stod(name.substr(7));
-  if (name == "pan") tremor = 0.3;
+  const bool pans = name.starts_with("pan");
+  const double pan_deg = name.starts_with("pan-") ? std::stod(name.substr(4)) : 20;
+  if (pans) tremor = 0.3;
   if (name == "zoom") tremor = 0.5;
   std::array<std::vector<double>, 3> drift;
   for (uint64_t k = 0; k < 3; ++k) drift[k] = SmoothDrift(times, 0.6, HashRandom(seed, {910, k}));
@@ -57,10 +61,12 @@ Turn TurnNamed(const std::string& name, const std::vector<double>& times, uint64
     Eigen::Vector3d w(drift[0][t], drift[1][t], drift[2][t]);
     w *= tremor * kDegree;
     const double swing = std::sin(2 * M_PI * times[t] / 4);
-    if (name == "pan") w.y() += 20 * kDegree * swing;
+    if (pans) w.y() += pan_deg * kDegree * swing;
     turn.rotation.push_back(RotationFromAxisAngle(w));
+    if (t > 0) turn.rotation[t] *= turn.rotation[0].transpose();
     turn.zoom.push_back(name == "zoom" ? 1 + 0.3 * (0.5 - 0.5 * std::cos(2 * M_PI * times[t] / 8)) : 1);
   }
+  turn.rotation[0].setIdentity();
   return turn;
 }
 
@@ -112,6 +118,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
   report.label_columns = {"clip", "turn"};
   report.value_columns = {"moves", "rms_deg", "focal_ratio", "focal_sigma", "z", "zoom", "ms", "solve_ms"};
   report.summarise = false;
+  const bool measures = arguments.Integer("measure") != 0;
   for (const std::string& clip : arguments.List("clips")) {
     double fps = 30;
     const std::vector<Image> frames = FramesOf(clip, arguments.Integer("seconds"), &fps);
@@ -138,13 +145,21 @@ void Run(const BenchArguments& arguments, const std::string& command) {
         const size_t period = std::max<size_t>(1, 2 * frames.size() - 2), at = t % period;
         const Image& source = frames[at < frames.size() ? at : period - at];
         const Image frame = name == "still" ? source : Turned(source, turn.rotation[t], focal, turn.zoom[t]);
+        if (writer) writer->Write(frame);
+        if (!measures) continue;
         const std::vector<CoveredRegion> regions = RegionsOf(detector->Detect({&frame, 1}).front());
         const double before = ProcessorSeconds();
         tracker.Push(frame, times[t], regions);
         seconds += ProcessorSeconds() - before;
-        if (writer) writer->Write(frame);
       }
-      if (writer) writer->Finish();
+      CameraPath truth;
+      truth.timestamps = times;
+      for (const Eigen::Matrix3d& rotation : turn.rotation) truth.poses.push_back({rotation, Eigen::Vector3d::Zero()});
+      if (writer) {
+        writer->Finish();
+        WriteCameraPath(arguments.Text("write") + "/" + stem + ".json", truth);
+      }
+      if (!measures) continue;
       const BackgroundTracks tracks = tracker.Finish();
       const double before = ProcessorSeconds();
       CameraMotionOptions options;
@@ -154,19 +169,12 @@ void Run(const BenchArguments& arguments, const std::string& command) {
       const double solve_s = ProcessorSeconds() - before;
       double squares = 0, normal = 0;
       const size_t poses = motion.path.poses.size();
-      CameraPath truth;
       for (size_t i = 0; i < poses; ++i) {
         const auto t = static_cast<size_t>(std::lround(motion.path.timestamps[i] * fps));
-        const Eigen::Matrix3d expected = turn.rotation[t] * turn.rotation[0].transpose();
-        const double off = RotationAngleBetween(expected, motion.path.poses[i].camera_from_world_rotation);
+        const double off = RotationAngleBetween(turn.rotation[t], motion.path.poses[i].camera_from_world_rotation);
         squares += off * off;
         if (motion.sigma_rad[i] > 0) normal += off * off / (3 * motion.sigma_rad[i] * motion.sigma_rad[i]);
       }
-      for (size_t t = 0; t < count; ++t) {
-        truth.timestamps.push_back(times[t]);
-        truth.poses.push_back({turn.rotation[t] * turn.rotation[0].transpose(), Eigen::Vector3d::Zero()});
-      }
-      if (writer) WriteCameraPath(arguments.Text("write") + "/" + stem + ".json", truth);
       if (writer && motion.has_path())
         WriteCameraPath(arguments.Text("write") + "/" + stem + "_found.json", motion.path);
       const double n = static_cast<double>(poses);
@@ -180,7 +188,7 @@ void Run(const BenchArguments& arguments, const std::string& command) {
                    motion.why.c_str(), tracks.anchors.size());
     }
   }
-  HandOver(report, arguments.Text("json"));
+  if (measures) HandOver(report, arguments.Text("json"));
 }
 
 }  // namespace
@@ -194,6 +202,7 @@ int main(int argc, char** argv) {
                               {"focal", "0"},
                               {"known-focal", "0"},
                               {"write", ""},
+                              {"measure", "1"},
                               {"json", ""}},
                              bodyloom::Run);
 }

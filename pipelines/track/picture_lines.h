@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The vertical from straight lines of the video or photo that a job tracks people in (tracking/room/
-/// picture_vertical.h). Only of a camera that stands still; the reason why none was found is in its `why`.
+/// picture_vertical.h): of a camera that stands still in the clip's median picture, of one whose path is known in the
+/// frames that were kept, turned into its scene. The reason why none was found is in its `why`.
 #pragma once
 
 #include "geometry/scene/observations.h"

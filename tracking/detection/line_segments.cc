@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/detection/line_segments.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,8 +38,8 @@ uint8_t DeviationOf(History* values, int count, uint8_t median) {
 /// The values of a pixel: where nobody is, or of all frames if somebody nearly always is.
 class PixelInSamples {
  public:
-  PixelInSamples(const FrameSamples& samples, std::span<const CoveredPixels> covered)
-      : samples_(samples.samples()), covered_(covered) {}
+  PixelInSamples(const std::vector<GreySample>& samples, std::span<const CoveredPixels> covered)
+      : samples_(samples), covered_(covered) {}
   /// Returns true if the pixel is seen often enough.
   bool Gather(size_t pixel) {
     count_ = 0;
@@ -61,6 +62,43 @@ class PixelInSamples {
   History values_{};
   int count_ = 0;
 };
+
+void CheckCovered(const FrameSamples& samples, std::span<const CoveredPixels> covered) {
+  const size_t pixels = samples.small().num_pixels();
+  BODYLOOM_CHECK(covered.empty() || covered.size() == samples.samples().size(), "line segments: people of ",
+                 covered.size(), " frames, expected ", samples.samples().size());
+  for (const CoveredPixels& people : covered) {
+    BODYLOOM_CHECK(people.empty() || people.size() == pixels, "line segments: people in ", people.size(),
+                   " pixels, expected ", pixels);
+  }
+}
+
+StillPicture MedianOfSamples(const std::vector<GreySample>& samples, std::span<const CoveredPixels> covered,
+                             const SmallPicture& size, int num_threads) {
+  StillPicture picture;
+  picture.width = size.width;
+  picture.height = size.height;
+  picture.scale = size.scale;
+  if (size.num_pixels() == 0) return picture;
+  picture.grey.resize(size.num_pixels());
+  picture.people.assign(size.num_pixels(), 0);
+  std::vector<int> restless(picture.height, 0), looked_at(picture.height, 0);
+  ParallelFor(picture.height, num_threads, [&](int y) {
+    PixelInSamples pixel(samples, covered);
+    for (int x = 0; x < picture.width; ++x) {
+      const size_t i = size_t(y) * picture.width + x;
+      picture.people[i] = pixel.Gather(i) ? 0 : 1;
+      picture.grey[i] = MedianOf(pixel.values(), pixel.count());
+      if (picture.people[i] != 0 || x % kRestlessStride != 0 || y % kRestlessStride != 0) continue;
+      ++looked_at[y];
+      restless[y] += DeviationOf(pixel.values(), pixel.count(), picture.grey[i]) > kRestlessLevels ? 1 : 0;
+    }
+  });
+  double moving = 0, all = 0;
+  for (int y = 0; y < picture.height; ++y) moving += restless[y], all += looked_at[y];
+  picture.restless_share = all > 0 ? moving / all : 0;
+  return picture;
+}
 
 bool MostlyMasked(const StillPicture& picture, const LineSegment& segment) {
   const int steps = 1 + static_cast<int>(segment.length());
@@ -109,37 +147,39 @@ bool FrameSamples::Add(const Image& frame) {
 }
 
 StillPicture MedianPicture(const FrameSamples& samples, std::span<const CoveredPixels> covered, int num_threads) {
-  const size_t pixels = samples.small().num_pixels();
-  BODYLOOM_CHECK(covered.empty() || covered.size() == samples.samples().size(), "line segments: people of ",
-                 covered.size(), " frames, expected ", samples.samples().size());
-  for (const CoveredPixels& people : covered) {
-    BODYLOOM_CHECK(people.empty() || people.size() == pixels, "line segments: people in ", people.size(),
-                   " pixels, expected ", pixels);
-  }
+  CheckCovered(samples, covered);
+  return MedianOfSamples(samples.samples(), covered, samples.small(), num_threads);
+}
+
+StillPicture MedianPicture(const FrameSamples& samples, std::span<const CoveredPixels> covered,
+                           std::span<const Eigen::Matrix3d> moved_from_sample, int num_threads) {
+  CheckCovered(samples, covered);
+  const size_t count = samples.samples().size();
+  BODYLOOM_CHECK(moved_from_sample.size() == count, "line segments: ", moved_from_sample.size(),
+                 " homographies, expected ", count);
   const SmallPicture& size = samples.small();
-  StillPicture picture;
-  picture.width = size.width;
-  picture.height = size.height;
-  picture.scale = size.scale;
-  if (pixels == 0) return picture;
-  picture.grey.resize(pixels);
-  picture.people.assign(pixels, 0);
-  std::vector<int> restless(picture.height, 0), looked_at(picture.height, 0);
-  ParallelFor(picture.height, num_threads, [&](int y) {
-    PixelInSamples pixel(samples, covered);
-    for (int x = 0; x < picture.width; ++x) {
-      const size_t i = size_t(y) * picture.width + x;
-      picture.people[i] = pixel.Gather(i) ? 0 : 1;
-      picture.grey[i] = MedianOf(pixel.values(), pixel.count());
-      if (picture.people[i] != 0 || x % kRestlessStride != 0 || y % kRestlessStride != 0) continue;
-      ++looked_at[y];
-      restless[y] += DeviationOf(pixel.values(), pixel.count(), picture.grey[i]) > kRestlessLevels ? 1 : 0;
-    }
+  Eigen::Matrix3d frame_from_small = size.scale * Eigen::Matrix3d::Identity();
+  frame_from_small.col(2) << 0.5 * size.scale - 0.5, 0.5 * size.scale - 0.5, 1;
+  std::vector<GreySample> moved(count);
+  std::vector<CoveredPixels> hidden(count, CoveredPixels(size.num_pixels()));
+  ParallelFor(static_cast<int>(count), num_threads, [&](int i) {
+    const Eigen::Matrix3d H = frame_from_small.inverse() * moved_from_sample[i] * frame_from_small;
+    cv::Mat homography(3, 3, CV_64F);
+    for (int k = 0; k < 9; ++k) homography.at<double>(k / 3, k % 3) = H(k / 3, k % 3);
+    const GreySample& sample = samples.samples()[i];
+    moved[i].frame = sample.frame;
+    moved[i].grey.resize(size.num_pixels());
+    const auto warp = [&](const std::vector<uint8_t>& from, int interpolation, int beyond, std::vector<uint8_t>* to) {
+      const cv::Mat source(size.height, size.width, CV_8UC1, const_cast<uint8_t*>(from.data()));
+      cv::Mat target(size.height, size.width, CV_8UC1, to->data());
+      cv::warpPerspective(source, target, homography, target.size(), interpolation, cv::BORDER_CONSTANT,
+                          cv::Scalar(beyond));
+    };
+    warp(sample.grey, cv::INTER_LINEAR, 0, &moved[i].grey);
+    const bool nobody = covered.empty() || covered[i].empty();
+    warp(nobody ? CoveredPixels(size.num_pixels(), 0) : covered[i], cv::INTER_NEAREST, 1, &hidden[i]);
   });
-  double moving = 0, all = 0;
-  for (int y = 0; y < picture.height; ++y) moving += restless[y], all += looked_at[y];
-  picture.restless_share = all > 0 ? moving / all : 0;
-  return picture;
+  return MedianOfSamples(moved, hidden, size, num_threads);
 }
 
 std::vector<LineSegment> FindLineSegments(const StillPicture& picture, double min_share) {

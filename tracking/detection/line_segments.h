@@ -6,6 +6,7 @@
 /// of the frames are masked. Segments come from OpenCV's detector (von Gioi et al. 2012, LSD).
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -59,6 +60,11 @@ inline constexpr double kMaxRestlessShare = 0.1;
 
 /// `covered`: of each of the samples; empty: nobody there. Throws std::invalid_argument for another number or size.
 StillPicture MedianPicture(const FrameSamples& samples, std::span<const CoveredPixels> covered, int num_threads = 1);
+
+/// The same as a camera that turns sees it in one of its directions. `moved_from_sample`: of each of the samples the
+/// homography of the frames' pixels from its direction to that one; pixels beyond the sample are hidden in it.
+StillPicture MedianPicture(const FrameSamples& samples, std::span<const CoveredPixels> covered,
+                           std::span<const Eigen::Matrix3d> moved_from_sample, int num_threads = 1);
 
 /// Segments of at least `min_share` of the picture's longer side, in pixels of the frames; those of which more than a
 /// tenth is masked are left out, and so are the picture's own borders and the edges of black bars beside it.

@@ -112,6 +112,14 @@ UpEstimate EstimateUp(std::span<const LiftedFrame> frames) {
   return estimate;
 }
 
+UpEstimate EstimateUp(std::span<const LiftedFrame> frames, std::span<const CameraPose> camera_from_scene) {
+  std::vector<LiftedFrame> turned(frames.begin(), frames.end());
+  for (size_t t = 0; t < turned.size(); ++t) {
+    turned[t].up = camera_from_scene[t].camera_from_world_rotation.transpose() * frames[t].up;
+  }
+  return EstimateUp(turned);
+}
+
 JoinedUps JoinUps(std::span<const UpOfView> views) {
   Vector3d mean = Vector3d::Zero();
   for (const UpOfView& view : views) mean += view.up;

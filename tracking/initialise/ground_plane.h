@@ -33,6 +33,8 @@ struct UpEstimate {
 /// Robust mean (10°) of the frames' up directions, weighted by 1/σ². Not found when no frame is `seen` or the spread
 /// exceeds 20°: then the camera turns, or the lifter is uncertain.
 UpEstimate EstimateUp(std::span<const LiftedFrame> frames);
+/// The same in the scene of a camera that moves, by its pose in each of the frames.
+UpEstimate EstimateUp(std::span<const LiftedFrame> frames, std::span<const CameraPose> camera_from_scene);
 
 /// The lifter's up over a shot in one of several views, and that camera's optical axis; in the scene, unit.
 struct UpOfView {

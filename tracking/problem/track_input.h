@@ -76,8 +76,8 @@ struct TrackSequenceInput {
   /// The vertical and the ground; without it they are estimated from the clip. It applies to every shot; the live
   /// tracker does not use it.
   const KnownGround* ground = nullptr;
-  /// The vertical that straight lines of the picture tell (room/picture_vertical.h), of a camera that stands still and
-  /// is no weak perspective. It is joined with the lifter's; not used with `ground`, nor by the live tracker. The
+  /// The vertical that straight lines of the picture tell (room/picture_vertical.h), in the scene; with no weak
+  /// perspective. It is joined with the lifter's; not used with `ground`, nor by the live tracker. The
   /// focal length that it tells is not used here: join it with `focal_prior` (JoinFocalPrior()).
   const PictureVertical* picture_vertical = nullptr;
   /// The person's stature, metres, which a single camera does not determine: distances are proportional to it. 0: the

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <set>
 #include <vector>
 
 #include "geometry/base/check.h"
@@ -32,10 +34,15 @@ constexpr int kFocalSteps = 41;
 constexpr double kFocalRange = 1.0986;  ///< ln 3
 constexpr double kFocalFloor = 0.08, kMaxFocalSigma = 0.25, kApart = 0.25, kMaxRivalShare = 0.85, kNearBestShare = 0.9;
 
+constexpr double kSameEdgeRad = 0.3 * kDegree;
+
 /// A segment in the coordinates of a pinhole with f = 1 and its principal point at the origin.
 struct NormalisedSegment {
   Vector2d a, b, middle, direction;
   double length = 0;
+  Matrix3d camera_from_scene = Matrix3d::Identity();  ///< rotation of its picture
+  int picture = 0;
+  int edge = 0;  ///< of the room; several pictures may show it
 };
 
 /// The same for a focal length e^log_ratio times as long.
@@ -48,21 +55,24 @@ NormalisedSegment Rescaled(NormalisedSegment segment, double log_ratio) {
 
 double FoldedAngle(double angle) { return angle - M_PI * std::round(angle / M_PI); }
 
-/// r(d), and its derivative by d. A vanishing point on the segment itself says nothing: 90°.
-double AngleToVanishingPoint(const NormalisedSegment& segment, const Vector3d& d, Vector3d* derivative = nullptr) {
+/// r of a direction of the scene, and its derivative by it. A vanishing point on the segment itself says nothing: 90°.
+double AngleToVanishingPoint(const NormalisedSegment& segment, const Vector3d& scene_d,
+                             Vector3d* derivative = nullptr) {
+  const Vector3d d = segment.camera_from_scene * scene_d;
   const Vector2d v = d.head<2>() - d.z() * segment.middle;
   const double squared = v.squaredNorm(), reach = 0.5 * segment.length * d.z();
   if (!(squared > reach * reach)) return M_PI / 2;
   if (derivative != nullptr) {
     const Vector2d by_v = Vector2d(-v.y(), v.x()) / squared;
-    *derivative << by_v.x(), by_v.y(), -by_v.dot(segment.middle);
+    *derivative = segment.camera_from_scene.transpose() * Vector3d(by_v.x(), by_v.y(), -by_v.dot(segment.middle));
   }
   const Vector2d& s = segment.direction;
   return FoldedAngle(std::atan2(s.x() * v.y() - s.y() * v.x(), s.dot(v)));
 }
 
 /// 1 − (r / 1°)² for |r| < 1°, else 0; without a call of atan2.
-double Agreement(const NormalisedSegment& segment, const Vector3d& d) {
+double Agreement(const NormalisedSegment& segment, const Vector3d& scene_d) {
+  const Vector3d d = segment.camera_from_scene * scene_d;
   const Vector2d v = d.head<2>() - d.z() * segment.middle;
   const double squared = v.squaredNorm(), reach = 0.5 * segment.length * d.z();
   if (!(squared > reach * reach)) return 0;
@@ -75,11 +85,18 @@ double TukeyWeight(double r) {
   return std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
 }
 
+/// In the scene.
 Vector3d RayPlane(const NormalisedSegment& segment) {
-  return segment.a.homogeneous().cross(segment.b.homogeneous()).normalized();
+  return segment.camera_from_scene.transpose() * segment.a.homogeneous().cross(segment.b.homogeneous()).normalized();
 }
 
-/// Usable segments, longest first; equal ones by their ends, so that the order given does not matter.
+/// Longest first; equal ones by their ends, so that the order given does not matter.
+void SortByLength(std::vector<NormalisedSegment>* segments) {
+  const auto key = [](const NormalisedSegment& s) { return std::array{-s.length, s.a.x(), s.a.y(), s.b.x(), s.b.y()}; };
+  std::sort(segments->begin(), segments->end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+}
+
+/// Usable segments of one picture, each an edge of its own.
 std::vector<NormalisedSegment> Normalised(std::span<const LineSegment> segments, const Camera& camera) {
   std::vector<NormalisedSegment> usable;
   for (const LineSegment& given : segments) {
@@ -94,9 +111,68 @@ std::vector<NormalisedSegment> Normalised(std::span<const LineSegment> segments,
     segment.direction = (segment.b - segment.a) / segment.length;
     usable.push_back(segment);
   }
-  const auto key = [](const NormalisedSegment& s) { return std::array{-s.length, s.a.x(), s.a.y(), s.b.x(), s.b.y()}; };
-  std::sort(usable.begin(), usable.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  SortByLength(&usable);
+  for (size_t i = 0; i < usable.size(); ++i) usable[i].edge = static_cast<int>(i);
   return usable;
+}
+
+/// The usable segments of several pictures, longest first.
+std::vector<NormalisedSegment> Normalised(std::span<const TurnedPicture> pictures, const Camera& camera) {
+  std::vector<NormalisedSegment> usable;
+  for (size_t i = 0; i < pictures.size(); ++i) {
+    for (NormalisedSegment& segment : Normalised(pictures[i].segments, camera)) {
+      segment.camera_from_scene = pictures[i].camera_from_scene;
+      segment.picture = static_cast<int>(i);
+      usable.push_back(segment);
+    }
+  }
+  SortByLength(&usable);
+  return usable;
+}
+
+/// An edge of the room by the longest segment that shows it.
+class SeenEdge {
+ public:
+  explicit SeenEdge(const NormalisedSegment& longest) : plane_(RayPlane(longest)), picture_(longest.picture) {
+    const Matrix3d scene_from_camera = longest.camera_from_scene.transpose();
+    inwards_from_a_ = plane_.cross(scene_from_camera * longest.a.homogeneous());
+    inwards_from_b_ = (scene_from_camera * longest.b.homogeneous()).cross(plane_);
+  }
+  [[nodiscard]] bool IsShownBy(const NormalisedSegment& segment) const {
+    if (segment.picture == picture_) return false;
+    const Matrix3d scene_from_camera = segment.camera_from_scene.transpose();
+    for (const Vector2d& end : {segment.a, segment.b}) {
+      const Vector3d ray = (scene_from_camera * end.homogeneous()).normalized();
+      if (!(std::abs(ray.dot(plane_)) < std::sin(kSameEdgeRad))) return false;
+    }
+    const Vector3d middle = scene_from_camera * segment.middle.homogeneous();
+    return middle.dot(inwards_from_a_) > 0 && middle.dot(inwards_from_b_) > 0;
+  }
+
+ private:
+  Vector3d plane_, inwards_from_a_, inwards_from_b_;
+  int picture_;
+};
+
+/// Numbers the edges that segments, longest first, show.
+void FindEdges(std::vector<NormalisedSegment>* segments) {
+  std::vector<SeenEdge> edges;
+  for (NormalisedSegment& segment : *segments) {
+    const auto same =
+        std::find_if(edges.begin(), edges.end(), [&](const SeenEdge& edge) { return edge.IsShownBy(segment); });
+    segment.edge = static_cast<int>(same - edges.begin());
+    if (same == edges.end()) edges.emplace_back(segment);
+  }
+}
+
+/// The first segment of each edge.
+std::vector<NormalisedSegment> LongestOfEdges(const std::vector<NormalisedSegment>& segments) {
+  std::set<int> seen;
+  std::vector<NormalisedSegment> longest;
+  for (const NormalisedSegment& segment : segments) {
+    if (seen.insert(segment.edge).second) longest.push_back(segment);
+  }
+  return longest;
 }
 
 double TotalLength(const std::vector<NormalisedSegment>& segments) {
@@ -136,16 +212,17 @@ Eigen::Matrix<double, 3, 2> AcrossDirection(const Vector3d& d) {
   return across;
 }
 
-/// Normal equations of Σ L ρ(r) and their sandwich covariance.
+/// Normal equations of Σ L ρ(r) and their sandwich covariance, whose rows are joined by edges.
 class RobustSums {
  public:
   explicit RobustSums(int size) : hessian_(MatrixXd::Zero(size, size)), gradient_(VectorXd::Zero(size)) {}
 
-  void Add(double length, double r, const VectorXd& j) {
+  void Add(double length, double r, const VectorXd& j, int edge) {
     const double weight = length * TukeyWeight(r);
     hessian_ += weight * j * j.transpose();
     gradient_ += weight * r * j;
-    rows_.push_back({weight, r, j});
+    of_edge_[edge].push_back(rows_.size());
+    rows_.push_back({weight, r, j, edge});
   }
   [[nodiscard]] MatrixXd Inverse() const {
     const double ridge = 1e-12 * hessian_.trace() + 1e-300;
@@ -161,9 +238,14 @@ class RobustSums {
     const MatrixXd inverse = Inverse();
     MatrixXd scatter = MatrixXd::Zero(hessian_.rows(), hessian_.cols());
     for (const Row& row : rows_) {
-      const double leverage = std::min(kMaxLeverage, row.weight * row.j.dot(inverse * row.j));
-      const double scaled = row.weight * row.r / (1 - leverage);
-      scatter += scaled * scaled * row.j * row.j.transpose();
+      const std::vector<size_t>& same = of_edge_.at(row.edge);
+      double leverage = 0;
+      for (const size_t k : same) leverage += rows_[k].weight * rows_[k].j.dot(inverse * rows_[k].j);
+      const double left = 1 - std::min(kMaxLeverage, leverage);
+      const double scaled = row.weight * row.r / left;
+      for (const size_t k : same) {
+        scatter += scaled * (rows_[k].weight * rows_[k].r / left) * row.j * rows_[k].j.transpose();
+      }
     }
     return inverse * scatter * inverse;
   }
@@ -173,10 +255,12 @@ class RobustSums {
   struct Row {
     double weight, r;
     VectorXd j;
+    int edge;
   };
   MatrixXd hessian_;
   VectorXd gradient_;
   std::vector<Row> rows_;
+  std::map<int, std::vector<size_t>> of_edge_;
 };
 
 /// Step 3 and 4.
@@ -187,7 +271,7 @@ void RefineVertical(const std::vector<NormalisedSegment>& candidates, PictureVer
     for (const NormalisedSegment& segment : candidates) {
       Vector3d derivative;
       const double r = AngleToVanishingPoint(segment, lines->up, &derivative);
-      if (std::abs(r) < kTukeyRad) sums.Add(segment.length, r, across.transpose() * derivative);
+      if (std::abs(r) < kTukeyRad) sums.Add(segment.length, r, across.transpose() * derivative, segment.edge);
     }
     if (pass == kRefinements) {
       lines->covariance =
@@ -279,7 +363,7 @@ MatrixXd RefineRoom(const std::vector<NormalisedSegment>& candidates, const std:
         const VectorXd step = kStep * VectorXd::Unit(4, k);
         j[k] = FoldedAngle(angle(room->Moved(step)) - angle(room->Moved(-step))) / (2 * kStep);
       }
-      sums.Add(segment.length, r, j);
+      sums.Add(segment.length, r, j, segment.edge);
     };
     for (const NormalisedSegment& segment : candidates) {
       add(segment, [&](const RoomAxes& at) { return AngleToVanishingPoint(segment, at.up()); });
@@ -328,17 +412,20 @@ void FindFocal(const std::vector<NormalisedSegment>& candidates, const std::vect
 }  // namespace
 
 Vector3d PictureVertical::Up(double focal) const {
-  return Vector3d(up.x(), up.y(), up.z() * focal / focal_px).normalized();
+  const Vector3d along = along_axes * up;
+  return (up - along + along * focal / focal_px).normalized();
 }
 
 Vector3d PictureVertical::UpByLogFocal(double focal) const {
-  const Vector3d at = Up(focal);
-  return at.z() * (Vector3d::UnitZ() - at.z() * at);
+  const Vector3d along = along_axes * up, grown = along * focal / focal_px, at = Up(focal);
+  const Vector3d by_focal = grown / (up - along + grown).norm(), direction = by_focal.normalized();
+  return by_focal.norm() * (direction - direction.dot(at) * at);
 }
 
 Matrix3d PictureVertical::CovarianceAt(double focal, double log_sigma) const {
-  const Vector3d scale(1, 1, focal / focal_px), moved = scale.cwiseProduct(up), at = moved.normalized();
-  const Matrix3d jacobian = (Matrix3d::Identity() - at * at.transpose()) * scale.asDiagonal() / moved.norm();
+  const Matrix3d scale = Matrix3d::Identity() - along_axes + along_axes * (focal / focal_px);
+  const Vector3d moved = scale * up, at = moved.normalized();
+  const Matrix3d jacobian = (Matrix3d::Identity() - at * at.transpose()) * scale / moved.norm();
   const Vector3d by_focal = log_sigma * UpByLogFocal(focal);
   return jacobian * covariance * jacobian.transpose() + by_focal * by_focal.transpose();
 }
@@ -358,26 +445,34 @@ std::string PictureVertical::BriefReport() const {
   return report;
 }
 
-PictureVertical FindPictureVertical(std::span<const LineSegment> segments, const Camera& camera,
-                                    const Vector3d& expected_up) {
+namespace {
+
+void CheckPinhole(const Camera& camera) {
   BODYLOOM_CHECK(camera.model == CameraModel::kPinhole && camera.fx > 0 && camera.fy > 0 && std::isfinite(camera.fx) &&
                      std::isfinite(camera.fy),
                  "vertical of a picture: focal length ", camera.fx, ", ", camera.fy,
                  ", expected a pinhole camera with positive numbers");
-  BODYLOOM_CHECK(std::abs(expected_up.norm() - 1) < 1e-6, "vertical of a picture: expected up has length ",
-                 expected_up.norm(), ", expected 1");
-  PictureVertical lines;
-  lines.focal_px = camera.fx;
-  const std::vector<NormalisedSegment> usable = Normalised(segments, camera);
+}
+
+std::vector<NormalisedSegment> NearVertical(const std::vector<NormalisedSegment>& usable, const Vector3d& expected_up) {
   std::vector<NormalisedSegment> candidates;
   for (const NormalisedSegment& segment : usable) {
     if (std::abs(AngleToVanishingPoint(segment, expected_up)) <= kMaxCandidateRad) candidates.push_back(segment);
   }
-  if (static_cast<int>(candidates.size()) < kMinLines) {
-    lines.why = Concatenate(candidates.size(), " lines near the vertical, expected ", kMinLines, " or more");
+  return candidates;
+}
+
+/// Without the focal length.
+PictureVertical VerticalOf(const std::vector<NormalisedSegment>& candidates, double focal_px,
+                           const Vector3d& expected_up) {
+  PictureVertical lines;
+  lines.focal_px = focal_px;
+  const std::vector<NormalisedSegment> edges = LongestOfEdges(candidates);
+  if (static_cast<int>(edges.size()) < kMinLines) {
+    lines.why = Concatenate(edges.size(), " lines near the vertical, expected ", kMinLines, " or more");
     return lines;
   }
-  const Vector3d start = BestHypothesis(candidates, expected_up);
+  const Vector3d start = BestHypothesis(edges, expected_up);
   if (start.isZero()) {
     lines.why = "no lines meet near the vertical";
     return lines;
@@ -385,22 +480,67 @@ PictureVertical FindPictureVertical(std::span<const LineSegment> segments, const
   lines.up = start;
   RefineVertical(candidates, &lines);
   double length = 0;
+  std::set<int> agreeing;
   for (const NormalisedSegment& segment : candidates) {
     if (!(std::abs(AngleToVanishingPoint(segment, lines.up)) < kInlierRad)) continue;
     length += segment.length;
-    ++lines.num_segments;
+    agreeing.insert(segment.edge);
   }
+  lines.num_segments = static_cast<int>(agreeing.size());
   lines.share = length / TotalLength(candidates);
   lines.found = lines.num_segments >= kMinLines && lines.share >= kMinLinesShare &&
                 lines.Sigma() <= kMaxLinesSigmaRad && lines.up.dot(expected_up) >= std::cos(kMaxCandidateRad);
-  lines.why = Concatenate(lines.num_segments, " of ", candidates.size(), " lines agree, ",
+  lines.why = Concatenate(lines.num_segments, " of ", edges.size(), " lines agree, ",
                           static_cast<int>(std::lround(100 * lines.share)), " % of their length");
+  return lines;
+}
+
+}  // namespace
+
+PictureVertical FindPictureVertical(std::span<const LineSegment> segments, const Camera& camera,
+                                    const Vector3d& expected_up) {
+  CheckPinhole(camera);
+  BODYLOOM_CHECK(std::abs(expected_up.norm() - 1) < 1e-6, "vertical of a picture: expected up has length ",
+                 expected_up.norm(), ", expected 1");
+  const std::vector<NormalisedSegment> usable = Normalised(segments, camera);
+  const std::vector<NormalisedSegment> candidates = NearVertical(usable, expected_up);
+  PictureVertical lines = VerticalOf(candidates, camera.fx, expected_up);
   if (!lines.found) return lines;
   std::vector<NormalisedSegment> others;
   for (const NormalisedSegment& segment : usable) {
     if (std::abs(AngleToVanishingPoint(segment, lines.up)) > kOtherRad) others.push_back(segment);
   }
   FindFocal(candidates, others, &lines);
+  return lines;
+}
+
+PictureVertical FindSharedVertical(std::span<const TurnedPicture> pictures, const Camera& camera) {
+  CheckPinhole(camera);
+  Vector3d above = Vector3d::Zero();
+  for (const TurnedPicture& picture : pictures) above -= picture.camera_from_scene.row(1).transpose();
+  if (!(above.norm() > 0.5 * static_cast<double>(pictures.size()))) {
+    PictureVertical none;
+    none.why = pictures.empty() ? "no pictures" : "the pictures have no common side that is above";
+    return none;
+  }
+  const Vector3d expected_up = above.normalized();
+  std::vector<NormalisedSegment> candidates = NearVertical(Normalised(pictures, camera), expected_up);
+  FindEdges(&candidates);
+  PictureVertical lines = VerticalOf(candidates, camera.fx, expected_up);
+  if (!lines.found) return lines;
+  Matrix3d hessian = Matrix3d::Zero(), by_axes = Matrix3d::Zero();
+  for (const NormalisedSegment& segment : candidates) {
+    Vector3d j;
+    const double r = AngleToVanishingPoint(segment, lines.up, &j);
+    if (!(std::abs(r) < kTukeyRad)) continue;
+    const Matrix3d information = segment.length * TukeyWeight(r) * j * j.transpose();
+    const Vector3d axis = segment.camera_from_scene.row(2);
+    hessian += information;
+    by_axes += information * axis * axis.transpose();
+  }
+  const Eigen::Matrix<double, 3, 2> across = AcrossDirection(lines.up);
+  const Matrix2d inverse = Matrix2d(across.transpose() * hessian * across).inverse();
+  lines.along_axes = across * inverse * across.transpose() * by_axes;
   return lines;
 }
 

@@ -28,6 +28,17 @@
 /// agreeing segments are at least 8 with 0.3 of the others' length, σ is at most 0.25, and no focal length farther off
 /// than 0.25 has more than 0.85 of the score.
 ///
+/// Several pictures of a camera that turns or moves: parallel lines stay so wherever they are seen from, so that the
+/// segments of all pictures are taken together. d is a direction of the scene, and r(R d) of each picture, whose
+/// rotation is R. An edge of the room is seen in one picture after the other, with the same error of its own: a segment
+/// is of the edge that a longer one of another picture shows when its ends lie within 0.3° of that one's plane and its
+/// middle between that one's ends. Hypotheses and their scores are of each edge's longest segment, refinement is of all
+/// segments, in 4. the rows of an edge are added up before they are squared (cluster-robust: Liang & Zeger 1986),
+///   H⁻¹ (Σ_e g_e g_eᵀ) H⁻¹,   g_e = Σ_{i∈e} w r j / (1 − h_e),   h_e = Σ_{i∈e} h_i,
+/// and 8 edges must agree. So a σ shrinks with the edges and not with the pictures. After a camera that goes somewhere
+/// an edge is another one; errors of the rotations are not in σ. These pictures tell no focal length: their rotations
+/// do, and better.
+///
 /// Source: vanishing points of Manhattan rooms, Coughlan & Yuille 1999; residual of a segment's middle, Denis et al.
 /// 2008; f from orthogonal vanishing points, Caprile & Torre 1990.
 #pragma once
@@ -35,6 +46,7 @@
 #include <Eigen/Core>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "geometry/scene/camera.h"
 #include "geometry/scene/line_segment.h"
@@ -42,7 +54,8 @@
 
 namespace bodyloom {
 
-/// The vertical of a picture. Directions are unit, in camera axes (x right, y down, z forward).
+/// The vertical of a picture, or of several in one scene. Directions are unit, in camera axes (x right, y down, z
+/// forward), or in the scene.
 struct PictureVertical {
   bool found = false;
   std::string why;                                 ///< the evidence in a few words, or the reason why none was found
@@ -51,14 +64,17 @@ struct PictureVertical {
   /// Of `up`, rad², with `focal_px` as the truth; rank 2: across `up`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double share = 0;      ///< of the candidates' length that agrees
-  int num_segments = 0;  ///< that agree
+  int num_segments = 0;  ///< that agree; of several pictures: edges
+  /// A: for another focal length `up` is (I − A + A f/f₀) up. Of one picture z zᵀ; of several with optical axes a
+  /// H⁻¹ Σ w j jᵀ a aᵀ.
+  Eigen::Matrix3d along_axes = Eigen::Vector3d::UnitZ() * Eigen::RowVector3d::UnitZ();
 
   bool has_focal = false;
   double log_focal = 0, log_focal_sigma = 0;  ///< of the focal length that the lines tell, pixels
 
   /// Up if the focal length is `focal`, pixels > 0.
   [[nodiscard]] Eigen::Vector3d Up(double focal) const;
-  /// d Up / d log f, across Up: |.| = sin θ cos θ for a camera that looks θ up or down.
+  /// d Up / d log f, across Up: |.| = sin θ cos θ for a picture that looks θ up or down.
   [[nodiscard]] Eigen::Vector3d UpByLogFocal(double focal) const;
   /// Covariance of Up(focal) when log focal has a standard deviation of `log_sigma`, rad², rank 2.
   [[nodiscard]] Eigen::Matrix3d CovarianceAt(double focal, double log_sigma) const;
@@ -74,6 +90,16 @@ struct PictureVertical {
 /// number and an `expected_up` that is not unit.
 PictureVertical FindPictureVertical(std::span<const LineSegment> segments, const Camera& camera,
                                     const Eigen::Vector3d& expected_up = Eigen::Vector3d(0, -1, 0));
+
+/// Segments of one picture of a camera that turns or moves.
+struct TurnedPicture {
+  std::vector<LineSegment> segments;                                ///< pixels
+  Eigen::Matrix3d camera_from_scene = Eigen::Matrix3d::Identity();  ///< rotation
+};
+
+/// Finds the vertical that the lines of all `pictures` share, in the scene; it is expected above the middle of their
+/// cameras. Otherwise as above.
+PictureVertical FindSharedVertical(std::span<const TurnedPicture> pictures, const Camera& camera);
 
 /// A direction measured in two ways.
 struct JoinedVertical {

@@ -73,6 +73,30 @@ TEST(PictureLines, OfPeopleAreMaskedByTheirMasks) {
   EXPECT_NEAR(std::abs(RollDeg(lines)), 5, 1);
 }
 
+TEST(PictureLines, OfACameraThatRollsAreTurnedIntoItsScene) {
+  DetectedClip clip = Clip();
+  SceneInputs scene = Scene();
+  RecordedCameraPath& path = scene.camera_path.emplace();
+  clip.samples = FrameSamples();
+  for (int t = 0; t < 4; ++t) {
+    const double roll = (t - 1) * 3 * M_PI / 180;
+    Image image(kWidth, kHeight, {80, 80, 80});
+    AddBars(5 - (t - 1) * 3, 20, 220, &image);
+    AddBars(-15, 260, 620, &image);
+    clip.samples.Add(image);
+    path.seconds.push_back(clip.people.timestamps[t]);
+    CameraPose& pose = path.poses.emplace_back();
+    pose.camera_from_world_rotation << std::cos(roll), -std::sin(roll), 0, std::sin(roll), std::cos(roll), 0, 0, 0, 1;
+  }
+  PictureVertical lines = VerticalOfClip({}, clip, scene);
+  ASSERT_TRUE(lines.found) << lines.why;
+  // The scene is the frame of the path's first pose, in whose picture the uprights lean by 8°.
+  EXPECT_NEAR(std::abs(RollDeg(lines)), 8, 1);
+  for (CameraPose& pose : path.poses) pose.camera_from_world_rotation.transposeInPlace();
+  lines = VerticalOfClip({}, clip, scene);
+  EXPECT_FALSE(lines.found && lines.share > 0.6) << "turned the wrong way they do not meet: " << lines.why;
+}
+
 TEST(PictureLines, SaysWhyThereAreNone) {
   const DetectedClip clip = Clip();
   TrackSettings off;
@@ -82,8 +106,9 @@ TEST(PictureLines, SaysWhyThereAreNone) {
   weak.camera_knowledge = CameraKnowledge::kWeak;
   EXPECT_FALSE(VerticalOfClip({}, clip, weak).found);
   SceneInputs moving = Scene();
-  moving.camera_path.emplace();
-  EXPECT_EQ(VerticalOfClip({}, clip, moving).why, "the camera moves");
+  moving.camera_path.emplace().poses.emplace_back();
+  moving.camera_path->seconds.push_back(100);  // of another clip
+  EXPECT_EQ(VerticalOfClip({}, clip, moving).why, "no pictures");
   EXPECT_EQ(VerticalOfClip({}, DetectedClip(), Scene()).why, "no frames were kept");
 }
 

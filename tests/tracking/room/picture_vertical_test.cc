@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace bodyloom::picture_vertical_test {
@@ -257,6 +258,197 @@ TEST(PictureVertical, GarbageIsNotFound) {
   Camera weak = camera;
   weak.model = CameraModel::kWeakPerspective;
   EXPECT_THROW(FindPictureVertical(one, weak), std::invalid_argument);
+}
+
+/// Edges of a room that a camera turns in, in the axes of a scene in which up is `up`.
+class TurnedRoom {
+ public:
+  explicit TurnedRoom(unsigned seed) : random_(seed) {}
+  const Vector3d up = -RoomInCamera(12, 0, 3).col(1);
+
+  /// Upright edges within `yaw` degrees of the scene's view, each leaning by `lean` degrees in some direction.
+  void AddEdges(int count, double yaw, double lean) {
+    for (int i = 0; i < count; ++i) {
+      const Vector3d side = up.unitOrthogonal(), other = up.cross(side);
+      const Vector3d along = (up + lean * kDegree * (gauss_(random_) * side + gauss_(random_) * other)).normalized();
+      const Vector3d view = RoomInCamera(Uniform(-12, 12), Uniform(-yaw, yaw), 0) * Vector3d::UnitZ();
+      const Vector3d middle = Uniform(3, 8) * view;
+      const double half = Uniform(0.3, 0.7);
+      edges_.push_back({middle - half * along, middle + half * along});
+    }
+  }
+  /// The edges that are whole in the picture of a camera at `place`, and clutter of its own.
+  TurnedPicture See(const Eigen::Matrix3d& R, double noise_px, int clutter = 0, const Vector3d& place = {0, 0, 0}) {
+    const Camera camera = MakePinhole(1280, 720, 1000);
+    TurnedPicture picture;
+    picture.camera_from_scene = R;
+    for (const auto& [from, to] : edges_) {
+      LineSegment segment;
+      if (!camera.Project(R * (from - place), &segment.a) || !camera.Project(R * (to - place), &segment.b)) continue;
+      const auto inside = [](const Vector2d& p) { return p.x() > 0 && p.x() < 1279 && p.y() > 0 && p.y() < 719; };
+      if (!inside(segment.a) || !inside(segment.b)) continue;
+      for (Vector2d* end : {&segment.a, &segment.b}) *end += noise_px * Vector2d(gauss_(random_), gauss_(random_));
+      picture.segments.push_back(segment);
+    }
+    Scene other(random_(), 1000);
+    other.AddClutter(clutter);
+    picture.segments.insert(picture.segments.end(), other.segments().begin(), other.segments().end());
+    return picture;
+  }
+  /// Pictures of a camera that trembles by `tremor` degrees about each axis and pans by ±`pan`.
+  std::vector<TurnedPicture> Pictures(int count, double tremor, double pan, double noise_px, int clutter = 0) {
+    std::vector<TurnedPicture> pictures;
+    for (int i = 0; i < count; ++i) {
+      const double yaw = pan * (count > 1 ? 2.0 * i / (count - 1) - 1 : 0) + tremor * gauss_(random_);
+      pictures.push_back(See(RoomInCamera(tremor * gauss_(random_), yaw, tremor * gauss_(random_)), noise_px, clutter));
+    }
+    return pictures;
+  }
+
+ private:
+  double Uniform(double low, double high) { return std::uniform_real_distribution<>(low, high)(random_); }
+  std::mt19937 random_;
+  std::normal_distribution<> gauss_;
+  std::vector<std::pair<Vector3d, Vector3d>> edges_;
+};
+
+TEST(SharedVertical, AreExactWithoutNoise) {
+  const Camera camera = MakePinhole(1280, 720, 1000);
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    TurnedRoom room(seed);
+    room.AddEdges(60, 180, 0);
+    for (const auto& [tremor, pan] : {std::pair(3.0, 0.0), {0.3, 40.0}, {1.0, 170.0}}) {
+      const PictureVertical lines = FindSharedVertical(room.Pictures(12, tremor, pan, 0), camera);
+      ASSERT_TRUE(lines.found) << lines.why;
+      EXPECT_LT(AngleDeg(lines.up, room.up), 1e-4) << tremor << ", " << pan;
+      EXPECT_NEAR(lines.share, 1, 1e-12);
+    }
+  }
+}
+
+TEST(SharedVertical, OfACameraThatGoesSomewhereShareTheVertical) {
+  TurnedRoom room(3);
+  room.AddEdges(40, 30, 0);
+  std::vector<TurnedPicture> pictures;
+  for (int i = 0; i < 8; ++i) pictures.push_back(room.See(RoomInCamera(i, 2 * i, -i), 0.3, 20, {0.2 * i, 0, 0.1 * i}));
+  const PictureVertical lines = FindSharedVertical(pictures, MakePinhole(1280, 720, 1000));
+  ASSERT_TRUE(lines.found) << lines.why;
+  EXPECT_LT(AngleDeg(lines.up, room.up), 0.3);
+}
+
+TEST(SharedVertical, TellMoreThanEachOfThem) {
+  // Three edges a picture are too few, those of a pan over all of them are not.
+  TurnedRoom room(9);
+  room.AddEdges(30, 60, 0);
+  const std::vector<TurnedPicture> pictures = room.Pictures(12, 0, 55, 0.3);
+  int alone = 0;
+  for (const TurnedPicture& picture : pictures) {
+    alone += FindPictureVertical(picture.segments, MakePinhole(1280, 720, 1000)).num_segments >= 8 ? 1 : 0;
+  }
+  const PictureVertical lines = FindSharedVertical(pictures, MakePinhole(1280, 720, 1000));
+  ASSERT_TRUE(lines.found) << lines.why;
+  EXPECT_LT(alone, 12);
+  EXPECT_GE(lines.num_segments, 20);
+  EXPECT_LT(AngleDeg(lines.up, room.up), 0.3);
+}
+
+/// Mean over rooms of the error squared, and of the stated variance without its floor, in deg², of two directions.
+std::pair<double, double> ErrorAndVariance(int pictures, double tremor) {
+  double squares = 0, stated = 0;
+  int found = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    TurnedRoom room(seed);
+    room.AddEdges(25, 25, 0.35);
+    const PictureVertical lines =
+        FindSharedVertical(room.Pictures(pictures, tremor, 0, 0.2), MakePinhole(1280, 720, 1000));
+    if (!lines.found) continue;
+    ++found;
+    squares += std::pow(AngleDeg(lines.up, room.up), 2);
+    stated += lines.covariance.trace() / (kDegree * kDegree) - 2 * 1.5 * 1.5;
+  }
+  EXPECT_GT(found, 95);
+  return {squares / found, stated / found};
+}
+
+TEST(SharedVertical, SigmaShrinksWithEdgesAndNotWithPictures) {
+  const auto [error_of_one, stated_of_one] = ErrorAndVariance(1, 1);
+  const auto [error, stated] = ErrorAndVariance(16, 1);
+  // The edges lean, each by itself, and do so in every picture. (The kernel leaves out those that lean most, so that
+  // the variance stated is somewhat small, for one picture as for many.)
+  EXPECT_GT(error, 0.7 * error_of_one);
+  EXPECT_GT(stated, 0.7 * stated_of_one);
+  EXPECT_NEAR(stated / error, stated_of_one / error_of_one, 0.2);
+}
+
+TEST(SharedVertical, ClutterIsNotAVertical) {
+  const Camera camera = MakePinhole(1280, 720, 1000);
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    TurnedRoom room(seed);
+    const PictureVertical of_each = FindSharedVertical(room.Pictures(12, 2, 0, 0, 150), camera);
+    EXPECT_FALSE(of_each.found) << seed << ": " << of_each.BriefReport();
+    // The same clutter again and again, as leaves that hang still.
+    const TurnedPicture once = room.See(Eigen::Matrix3d::Identity(), 0, 200);
+    const PictureVertical again = FindSharedVertical(std::vector<TurnedPicture>(12, once), camera);
+    EXPECT_FALSE(again.found) << seed << ": " << again.BriefReport();
+    EXPECT_FALSE(again.why.empty());
+  }
+}
+
+TEST(SharedVertical, AFewEdgesSeenOftenAreAFewEdges) {
+  TurnedRoom room(4);
+  room.AddEdges(5, 10, 0);
+  const PictureVertical lines = FindSharedVertical(room.Pictures(20, 1, 0, 0.3), MakePinhole(1280, 720, 1000));
+  EXPECT_FALSE(lines.found) << lines.BriefReport();
+}
+
+TEST(SharedVertical, TurnWithTheFocalLengthAlongTheirAxes) {
+  TurnedRoom room(6);
+  room.AddEdges(60, 60, 0);
+  const std::vector<TurnedPicture> pictures = room.Pictures(12, 2, 40, 0);
+  const PictureVertical lines = FindSharedVertical(pictures, MakePinhole(1280, 720, 950));
+  ASSERT_TRUE(lines.found) << lines.why;
+  EXPECT_GT(AngleDeg(lines.up, room.up), 0.15);
+  EXPECT_LT(AngleDeg(lines.Up(1000), room.up), 0.2 * AngleDeg(lines.up, room.up)) << AngleDeg(lines.up, room.up);
+  const double h = 1e-5;
+  const Vector3d numeric = (lines.Up(950 * std::exp(h)) - lines.Up(950 * std::exp(-h))) / (2 * h);
+  EXPECT_LT((lines.UpByLogFocal(950) - numeric).norm(), 1e-8);
+  // The covariance is that of (I − A + A f/f₀) up, normalised.
+  Eigen::Matrix3d jacobian;
+  for (int k = 0; k < 3; ++k) {
+    PictureVertical moved[2] = {lines, lines};
+    for (int side : {0, 1}) moved[side].up += (side == 0 ? h : -h) * Vector3d::Unit(k);
+    jacobian.col(k) = (moved[0].Up(1200) - moved[1].Up(1200)) / (2 * h);
+  }
+  EXPECT_LT((lines.CovarianceAt(1200, 0) - jacobian * lines.covariance * jacobian.transpose()).norm(), 1e-9);
+}
+
+TEST(SharedVertical, OneThatIsNotTurnedIsThePictureItself) {
+  Scene scene(3, 1000);
+  scene.AddLines(20, -RoomInCamera(10, 20, -5).col(1), 0.5);
+  scene.AddClutter(30);
+  const PictureVertical alone = FindPictureVertical(scene.segments(), scene.camera());
+  const PictureVertical lines = FindSharedVertical(std::vector<TurnedPicture>{{scene.segments()}}, scene.camera());
+  EXPECT_EQ(lines.up, alone.up);
+  EXPECT_EQ(lines.covariance, alone.covariance);
+  EXPECT_EQ(lines.num_segments, alone.num_segments);
+  EXPECT_LT((lines.UpByLogFocal(1000) - alone.UpByLogFocal(1000)).norm(), 1e-9);
+}
+
+TEST(SharedVertical, GarbageIsNotFound) {
+  const Camera camera = MakePinhole(1280, 720, 1000);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(FindSharedVertical(std::span<const TurnedPicture>(), camera).why, "no pictures");
+  TurnedRoom room(4);
+  room.AddEdges(20, 20, 0);
+  const TurnedPicture upright = room.See(Eigen::Matrix3d::Identity(), 0.3);
+  TurnedPicture upside_down = upright;
+  upside_down.camera_from_scene = RoomInCamera(0, 0, 180);
+  EXPECT_FALSE(FindSharedVertical(std::vector<TurnedPicture>{upright, upside_down}, camera).found);
+  TurnedPicture broken = upright;
+  for (LineSegment& segment : broken.segments) segment.a.x() = nan;
+  EXPECT_FALSE(FindSharedVertical(std::vector<TurnedPicture>(10, broken), camera).found);
+  EXPECT_THROW(FindSharedVertical(std::vector<TurnedPicture>{upright}, MakePinhole(1280, 720, nan)),
+               std::invalid_argument);
 }
 
 PictureVertical Given(const Vector3d& up, double sigma_rad) {

@@ -19,8 +19,9 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-SynthClip Clip() {
+SynthClip Clip(SynthCameraMotion motion = SynthCameraMotion::kStill) {
   SynthClipOptions options;
+  options.camera_path = {.motion = motion, .shake_deg = 3, .shake_m = 0};
   options.dense_per_frame = 0;
   options.camera.elevation_deg = 20;
   return MakeSynthClip(BuiltinBody(), DemoMotion(BuiltinBody(), 40, 20), options);
@@ -45,6 +46,7 @@ GroundSummary GroundOf(const SynthClip& clip, const PictureVertical* lines, cons
   input.prior = &BuiltinPosePrior();
   input.lifter = &BuiltinLifter();
   input.camera = clip.truth.camera;
+  if (clip.truth.HasMovingCamera()) input.camera_from_scene = &clip.truth.camera_from_scene;
   input.picture_vertical = lines;
   input.ground = ground;
   TrackSequenceOptions options;
@@ -81,6 +83,17 @@ TEST(VerticalFromLines, DrawsTheTrackersVerticalToIt) {
   // True lines make it right.
   const PictureVertical right = LinesOf(clip.up_in_camera, clip.truth.camera);
   EXPECT_LT(AngleDeg(GroundOf(clip, &right).up, clip.up_in_camera), 2);
+}
+
+TEST(VerticalFromLines, BehindACameraThatTurnsItIsOfTheScene) {
+  const SynthClip clip = Clip(SynthCameraMotion::kHandHeld);
+  ASSERT_TRUE(clip.truth.HasMovingCamera());
+  const Eigen::Vector3d side = Eigen::AngleAxisd(8 * kDegree, Eigen::Vector3d::UnitZ()) * clip.up_in_camera;
+  const PictureVertical lines = LinesOf(side, clip.truth.camera);
+  const GroundSummary alone = GroundOf(clip, nullptr), with = GroundOf(clip, &lines);
+  EXPECT_GT(AngleDeg(alone.up, side), 3.5);
+  EXPECT_LT(AngleDeg(with.up, side), 3);
+  EXPECT_LT(with.up_sigma_deg, 0.8 * alone.up_sigma_deg);
 }
 
 TEST(VerticalFromLines, FarFromTheLiftersItIsLeftOut) {

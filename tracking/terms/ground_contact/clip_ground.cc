@@ -87,18 +87,16 @@ std::vector<LowestPoint> LowestPoints(const SequenceProblem& problem, const std:
 
 UpEstimate UpInScene(std::span<const LiftedFrame> lifted, std::span<const FrameData> frames) {
   if (frames.front().camera_from_scene == nullptr) return EstimateUp(lifted);
-  std::vector<LiftedFrame> turned(lifted.begin(), lifted.end());
-  for (size_t t = 0; t < turned.size(); ++t) {
-    turned[t].up = frames[t].camera_from_scene->camera_from_world_rotation.transpose() * lifted[t].up;
-  }
-  return EstimateUp(turned);
+  std::vector<CameraPose> camera_from_scene;
+  for (const FrameData& frame : frames) camera_from_scene.push_back(*frame.camera_from_scene);
+  return EstimateUp(lifted, camera_from_scene);
 }
 
 ClipGround::ClipGround(const ClipTermInput& clip)
     : options_(clip.options.ground),
       keypoints_(clip.joints),
       known_(clip.input.ground),
-      lines_(known_ == nullptr && clip.input.camera_from_scene == nullptr ? clip.input.picture_vertical : nullptr),
+      lines_(known_ == nullptr ? clip.input.picture_vertical : nullptr),
       lifted_(clip.lifted.frames),
       landmarks_(clip.lifted_landmarks),
       views_(clip.views),
@@ -166,16 +164,10 @@ std::optional<UpOfView> ClipGround::UpInOwnScene(size_t v, const SequenceProblem
   if (last <= first) return std::nullopt;
   const auto frames = std::span(views_[v].lifted).subspan(first, last - first);
   UpOfView result{Vector3d::Zero(), Vector3d::UnitZ()};
-  std::vector<LiftedFrame> turned;
-  if (view_paths_[v] != nullptr) {
-    turned.assign(frames.begin(), frames.end());
-    for (std::ptrdiff_t t = first; t < last; ++t) {
-      const Eigen::Matrix3d own_from_camera = (*view_paths_[v])[t].camera_from_world_rotation.transpose();
-      turned[t - first].up = own_from_camera * turned[t - first].up;
-      if (t == (first + last) / 2) result.axis = own_from_camera.col(2);
-    }
-  }
-  const UpEstimate up = EstimateUp(turned.empty() ? frames : turned);
+  const std::vector<CameraPose>* path = view_paths_[v];
+  if (path != nullptr) result.axis = (*path)[(first + last) / 2].camera_from_world_rotation.row(2);
+  const UpEstimate up =
+      path == nullptr ? EstimateUp(frames) : EstimateUp(frames, std::span(*path).subspan(first, last - first));
   if (!up.found) return std::nullopt;
   result.up = up.up;
   return result;
