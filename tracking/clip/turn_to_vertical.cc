@@ -19,15 +19,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-void TurnLandmarks(const Matrix3d& turn, LiftedFrame* frame) {
-  frame->points = (frame->points * turn.transpose()).eval();
-  for (auto& limb : frame->limbs) {
-    for (LiftedLimb& guess : limb) {
-      for (Vector3d& point : guess.points) point = turn * point;
-    }
-  }
-}
-
 /// Calls turn(begin, end, R) for each shot whose up is clear, with the turn from it to up_for(it), in the scene of
 /// `path` (null: in the camera); returns the largest.
 template <typename UpFor, typename Turn>

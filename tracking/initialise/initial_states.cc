@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/initialise/initial_states.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "geometry/base/check.h"
@@ -128,13 +130,46 @@ Camera CameraOfRays(const FrameLayout& layout) {
   return camera;
 }
 
+/// The joints as the scene's camera sees them; `path` turns in place. None where it looks too far away from them.
+std::optional<KeypointSequence> SeenFromScene(const KeypointSequence& keypoints, const Camera& camera,
+                                              const std::vector<CameraPose>& path) {
+  const double farthest = std::cos(M_PI / 4);
+  for (const CameraPose& pose : path) {
+    if (!pose.camera_from_world_translation.isZero() || pose.camera_from_world_rotation(2, 2) < farthest) return {};
+  }
+  KeypointSequence turned = keypoints;
+  const size_t joints = keypoints.names.size();
+  for (size_t i = 0; i < turned.points.size(); ++i) {
+    Keypoint& point = turned.points[i];
+    const Vector3d ray = camera.Unproject({point.x, point.y}).homogeneous();
+    Vector2d pixel = Vector2d::Zero();
+    if (!camera.Project(path[i / joints].camera_from_world_rotation.transpose() * ray, &pixel)) point.confidence = 0;
+    point.x = static_cast<float>(pixel.x());
+    point.y = static_cast<float>(pixel.y());
+  }
+  return turned;
+}
+
+/// The network reads how the person moves over the picture as from a camera that stands still. So behind one that turns
+/// it reads the joints as the scene's camera sees them, and its landmarks are turned back.
 std::vector<LiftedFrame> LiftedFrames(const TrackSequenceInput& input, const KeypointSequence& keypoints,
                                       const FrameLayout& layout, const TrackSequenceOptions& options) {
   if (input.lifted != nullptr) return *input.lifted;
   LiftOptions lift;
   lift.num_threads = ThreadsFor(options.num_threads);
-  return LiftKeypoints(keypoints, CameraOfRays(layout), layout.knowledge == CameraKnowledge::kKnown,
-                       FindCuts(keypoints), *input.lifter, lift);
+  const Camera camera = CameraOfRays(layout);
+  std::optional<KeypointSequence> from_scene;
+  if (input.camera_from_scene != nullptr) from_scene = SeenFromScene(keypoints, camera, *input.camera_from_scene);
+  std::vector<LiftedFrame> lifted =
+      LiftKeypoints(from_scene ? *from_scene : keypoints, camera, layout.knowledge == CameraKnowledge::kKnown,
+                    FindCuts(keypoints), *input.lifter, lift);
+  for (size_t t = 0; from_scene && t < lifted.size(); ++t) {
+    const Matrix3d& R = (*input.camera_from_scene)[t].camera_from_world_rotation;
+    TurnLandmarks(R, &lifted[t]);
+    lifted[t].up = R * lifted[t].up;
+    lifted[t].camera_from_virtual = R * lifted[t].camera_from_virtual;
+  }
+  return lifted;
 }
 
 /// The frames that the initialiser has, and the others between them.

@@ -87,6 +87,15 @@ RowMatrixXf MirrorFeatures(const RowMatrixXf& features) {
   return result;
 }
 
+void TurnLandmarks(const Eigen::Matrix3d& turn, LiftedFrame* frame) {
+  frame->points = (frame->points * turn.transpose()).eval();
+  for (auto& limb : frame->limbs) {
+    for (LiftedLimb& guess : limb) {
+      for (Eigen::Vector3d& point : guess.points) point = turn * point;
+    }
+  }
+}
+
 void SetLimb(int limb, const LiftedLimb& guess, LiftedFrame* frame) {
   const auto points = LifterOutput::LimbPoints(limb);
   for (size_t i = 0; i < points.size(); ++i) {

@@ -39,6 +39,9 @@ RowMatrixXf MirrorFeatures(const RowMatrixXf& features);
 LiftedFrame ReadLifter(const RowMatrixXf& plain, const RowMatrixXf& mirrored, Eigen::Index row,
                        const Eigen::Matrix3d& camera_from_virtual);
 
+/// Turns the landmarks and the limbs' hypotheses about the mid-hip; `up` and `camera_from_virtual` stay.
+void TurnLandmarks(const Eigen::Matrix3d& turn, LiftedFrame* frame);
+
 /// Writes a limb's hypothesis into the frame's points and sigma.
 void SetLimb(int limb, const LiftedLimb& guess, LiftedFrame* frame);
 /// Expected limb: the weighted mean of its hypotheses, which has the minimum expected error where they disagree about

@@ -12,6 +12,9 @@
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "tracking/clip/clip_fit.h"
+#include "tracking/initialise/initial_states.h"
+#include "tracking/initialise/lifted_start.h"
+#include "tracking/problem/frame_layout.h"
 #include "tracking/room/picture_vertical.h"
 
 namespace bodyloom::vertical_from_lines_test {
@@ -94,6 +97,43 @@ TEST(VerticalFromLines, BehindACameraThatTurnsItIsOfTheScene) {
   EXPECT_GT(AngleDeg(alone.up, side), 3.5);
   EXPECT_LT(AngleDeg(with.up, side), 3);
   EXPECT_LT(with.up_sigma_deg, 0.8 * alone.up_sigma_deg);
+}
+
+TEST(VerticalFromLines, TheLifterReadsTheJointsWithoutTheCamerasTurns) {
+  const SynthClip still = Clip();
+  const Camera& camera = still.truth.camera;
+  KeypointSequence turned = still.keypoints;
+  std::vector<CameraPose> path;
+  const size_t joints = turned.names.size();
+  for (int t = 0; t < turned.num_frames(); ++t) {
+    const double angle = 5 * kDegree * std::sin(2 * M_PI * 3 * t / turned.num_frames());
+    const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, Eigen::Vector3d(1, -2, 1).normalized()).toRotationMatrix();
+    path.push_back({R, Eigen::Vector3d::Zero()});
+    for (size_t k = 0; k < joints; ++k) {
+      Keypoint& point = turned.points[t * joints + k];
+      Eigen::Vector2d pixel;
+      ASSERT_TRUE(camera.Project(R * camera.Unproject({point.x, point.y}).homogeneous(), &pixel));
+      point.x = float(pixel.x()), point.y = float(pixel.y());
+    }
+  }
+  TrackSequenceInput input;
+  input.body = &BuiltinBody();
+  input.lifter = &BuiltinLifter();
+  const FrameLayout layout = FrameLayout::Make(BuiltinBody(), CameraKnowledge::kKnown, camera, {0}, 0);
+  LiftedStart expected;
+  input.keypoints = &still.keypoints;
+  FindInitialStates(input, &still.keypoints, layout, {}, &expected);
+  ASSERT_EQ(expected.frames.size(), path.size());
+  input.keypoints = &turned;
+  input.camera_from_scene = &path;
+  LiftedStart lifted;
+  FindInitialStates(input, &turned, layout, {}, &lifted);
+  ASSERT_EQ(lifted.frames.size(), path.size());
+  for (size_t t = 0; t < path.size(); ++t) {
+    const Eigen::Matrix3d& R = path[t].camera_from_world_rotation;
+    EXPECT_LT((lifted.frames[t].points * R - expected.frames[t].points).cwiseAbs().maxCoeff(), 0.01) << t;
+    EXPECT_LT((R.transpose() * lifted.frames[t].up - expected.frames[t].up).norm(), 0.01) << t;
+  }
 }
 
 TEST(VerticalFromLines, FarFromTheLiftersItIsLeftOut) {
