@@ -85,8 +85,8 @@ int Run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
 #ifdef __GLIBC__
-  // Freed memory stays in the arena that it came from, of which there may be eight for each core. With few of them a
-  // video of two minutes takes a seventh less, in the same time (docs/lab/run_speed.md).
+  // Freed memory stays in the arena that it came from, of which there may be eight for each core: with two a long video
+  // takes less of it in the same time (docs/lab/run_speed.md).
   mallopt(M_ARENA_MAX, 2);
 #endif
   bodyloom::InstallSignalHandlers();

@@ -125,6 +125,7 @@ Track TrackInCameras(const BodyModel& body, const Track& track) {
   }
   seen.camera_from_scene.clear();
   seen.world.reset();
+  seen.level_m.resize(0);
   return seen;
 }
 

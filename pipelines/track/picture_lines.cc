@@ -38,9 +38,6 @@ Camera CameraOfLines(const SceneInputs& scene) {
 /// The reason why no lines are looked for; "": they are.
 std::string WhyNoLines(const TrackSettings& request, const SceneInputs& scene) {
   if (!request.use_lines) return "switched off";
-  if (scene.camera_path && !scene.camera_path->frames.empty() && request.from_s > 0) {
-    return "the camera's path is by numbers of the span's frames";
-  }
   if (scene.camera_knowledge == CameraKnowledge::kWeak) return "weak perspective has no vanishing points";
   return "";
 }
@@ -110,14 +107,16 @@ std::vector<TurnedPicture> MediansOfTurned(const KeptFrames& kept, const Cameras
     const auto is_near = [&](const Eigen::Matrix3d& other) { return other.row(2).dot(R.row(2)) > std::cos(apart); };
     if (std::any_of(directions.begin(), directions.end(), is_near)) continue;
     directions.push_back(R);
-    // A sample that is not on the path is hidden: nothing of it comes into the picture.
-    const Eigen::Matrix3d nowhere = Eigen::Vector3d(1, 1, 1e-9).asDiagonal();
-    std::vector<Eigen::Matrix3d> moved_from_sample(kept.seconds.size(), nowhere);
+    // A sample that is not on the path, or looks the other way, is hidden.
+    std::vector<Eigen::Matrix3d> moved_from_sample(kept.seconds.size(), Eigen::Matrix3d::Identity());
+    std::vector<CoveredPixels> covered(kept.seconds.size(), CoveredPixels(kept.samples.small().num_pixels(), 1));
     for (size_t k = 0; k < cameras.samples.size(); ++k) {
       const Eigen::Matrix3d& of_sample = cameras.camera_from_scene[k].camera_from_world_rotation;
+      if (R.row(2).dot(of_sample.row(2)) <= 0) continue;
       moved_from_sample[cameras.samples[k]] = K * R * of_sample.transpose() * K.inverse();
+      covered[cameras.samples[k]] = kept.covered[cameras.samples[k]];
     }
-    const StillPicture picture = MedianPicture(kept.samples, kept.covered, moved_from_sample, num_threads);
+    const StillPicture picture = MedianPicture(kept.samples, covered, moved_from_sample, num_threads);
     if (picture.restless_share > kMaxRestlessShare) continue;
     pictures.push_back({SegmentsOf(picture, kept.video_from_camera), R});
   }
@@ -200,9 +199,13 @@ PictureVertical VerticalOfVideo(const TrackRequest& request, const KeypointSeque
                                 const SceneInputs& scene) {
   PictureVertical none;
   none.why = request.live_lag ? "live tracking does not use it" : WhyNoLines(request, scene);
+  if (none.why.empty() && scene.camera_path && !scene.camera_path->frames.empty() && request.from_s > 0) {
+    none.why = "the camera's path counts frames from --from on, the lines those of the whole video";
+  }
   if (!none.why.empty()) return none;
-  FrameSource source(request.video,
-                     {.fps = request.fps, .turn_deg = scene.playback.turn_deg, .captured_fps = request.captured_fps});
+  FrameSpan span{.fps = request.fps, .turn_deg = scene.playback.turn_deg, .captured_fps = request.captured_fps};
+  if (scene.camera_path) span.from_s = request.from_s;  // the path is of these frames
+  FrameSource source(request.video, span);
   FrameSamples samples;
   std::vector<double> times;
   Image frame;

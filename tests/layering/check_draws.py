@@ -15,7 +15,7 @@ import sys
 from check_includes import FOLDERS
 from check_names import blanked
 
-GENERATOR = r"(?:random|rng|noise|generator)"
+GENERATOR = r"(?:random|rng|noise|generator)_?"
 DRAW = re.compile(
     rf"\b{GENERATOR}(?:\.|->)(?:Uniform|Normal|Below|Next|Exponential)\(|\b\w+\([&*]?{GENERATOR}\b[,)]|\b(?:normal|uniform|draw)\([^()]*\)"
 )

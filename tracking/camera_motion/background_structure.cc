@@ -541,7 +541,7 @@ class StructureSolve {
     }
   }
 
-  [[nodiscard]] bool Solve(Bundle* bundle, int iterations, double* final_cost) const {
+  [[nodiscard]] bool Solve(Bundle* bundle, int iterations) const {
     ceres::Solver::Options solver;
     // Larger systems of cameras are mostly zeros: keys far apart share no points.
     constexpr size_t kDenseViews = 60;
@@ -556,7 +556,6 @@ class StructureSolve {
     for (double* point : bundle->points) solver.linear_solver_ordering->AddElementToGroup(point, 0);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &bundle->problem, &summary);
-    *final_cost = summary.final_cost;
     return summary.IsSolutionUsable();
   }
 
@@ -565,8 +564,7 @@ class StructureSolve {
     Bundle bundle;
     Build(state, free, 3 * kKeptSmallPx * small_px_, &bundle);
     if (bundle.views.empty() || bundle.residuals < kFewestCommon) return false;
-    double cost = 0;
-    if (!Solve(&bundle, iterations, &cost) || !std::isfinite(state->log_focal)) return false;
+    if (!Solve(&bundle, iterations) || !std::isfinite(state->log_focal)) return false;
     DropPoints(state);
     return true;
   }
@@ -612,8 +610,7 @@ class StructureSolve {
     const std::vector<size_t> keys = AllPlacedKeys();
     Build(&now_, keys, kKeptSmallPx * small_px_, &bundle);
     if (bundle.residuals < kFewestCommon) return false;
-    double cost = 0;
-    if (!Solve(&bundle, 50, &cost) || !std::isfinite(now_.log_focal)) return false;
+    if (!Solve(&bundle, 50) || !std::isfinite(now_.log_focal)) return false;
     std::vector<double*> blocks;
     std::vector<size_t> views;
     for (const size_t v : bundle.views) {

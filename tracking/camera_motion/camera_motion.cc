@@ -277,6 +277,8 @@ void TakePath(const BackgroundTracks& tracks, const PlacedFrames& placed, Camera
   path.poses = placed.poses;
   motion->sigma_rad = placed.sigma_rad;
   motion->sigma_place = placed.sigma_place;
+  motion->of_frames = SigmasAt(tracks.timestamps, path, {placed.sigma_rad, placed.sigma_place});
+  const double first_seen_s = path.timestamps.front(), last_seen_s = path.timestamps.back();
   // Frames before the first and after the last with a sight are held; σ: half of the way at the path's largest speed.
   const double turns = LargestSpeed(tracks, placed, [](const CameraPose& a, const CameraPose& b) {
     return RotationAngleBetween(a.camera_from_world_rotation, b.camera_from_world_rotation);
@@ -302,7 +304,19 @@ void TakePath(const BackgroundTracks& tracks, const PlacedFrames& placed, Camera
     hold(&motion->sigma_rad, true, turns * held_s / 2);
     hold(&motion->sigma_place, true, goes * held_s / 2);
   }
-  motion->of_frames = SigmasAt(tracks.timestamps, path, {motion->sigma_rad, motion->sigma_place});
+  const auto held = [&](double t, const std::vector<double>& of_poses, double* sigma) {
+    const bool before = t < first_seen_s;
+    if (of_poses.empty() || (!before && t <= last_seen_s)) return;
+    const double seen_s = before ? first_seen_s : last_seen_s;
+    const double end_s = before ? tracks.timestamps.front() : tracks.timestamps.back();
+    const double at_seen = before ? of_poses[1] : of_poses[of_poses.size() - 2];
+    const double at_end = before ? of_poses.front() : of_poses.back();
+    *sigma = at_seen + (at_end - at_seen) * (t - seen_s) / (end_s - seen_s);
+  };
+  for (size_t t = 0; t < tracks.timestamps.size(); ++t) {
+    held(tracks.timestamps[t], motion->sigma_rad, &motion->of_frames.rad[t]);
+    if (!motion->sigma_place.empty()) held(tracks.timestamps[t], motion->sigma_place, &motion->of_frames.place[t]);
+  }
 }
 
 double TurnedDeg(const std::vector<CameraPose>& poses) {

@@ -53,8 +53,7 @@ Vector3d UpByLines(const Vector3d& up, const PictureVertical& lines, const Start
 double TurnToVertical(const TrackSequenceInput& input, const StartFocal& focal, const std::vector<char>& cut_before,
                       LiftedStart* lifted, std::vector<FrameState>* states) {
   const std::vector<CameraPose>* path = input.camera_from_scene;
-  const bool knows =
-      input.ground != nullptr ? path == nullptr : input.picture_vertical != nullptr && input.picture_vertical->found;
+  const bool knows = input.ground != nullptr || (input.picture_vertical != nullptr && input.picture_vertical->found);
   if (!knows || lifted->frames.empty()) return 0;
   return TurnShots(
       lifted->frames, path, cut_before,

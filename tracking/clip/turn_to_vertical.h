@@ -24,7 +24,7 @@ struct StartFocal {
 };
 
 /// `states`: one a frame, camera axes. Returns the largest turn of a shot, radians: 0 where neither lines nor a ground
-/// are known, where the lifter's vertical is not clear, and for a ground that is given behind a moving camera.
+/// are known, and where the lifter's vertical is not clear.
 double TurnToVertical(const TrackSequenceInput& input, const StartFocal& focal, const std::vector<char>& cut_before,
                       LiftedStart* lifted, std::vector<FrameState>* states);
 

@@ -169,12 +169,12 @@ SupportLevels FindSupportLevels(std::span<const LowestPoint> points, const Vecto
     }
     main.seconds = on_it_s;
   }
-  result.why = Concatenate("the body rests on it for ", std::round(10 * main.seconds) / 10, " s");
+  result.why = Concatenate("the body rests on it for ", std::round(10 * SecondsAtRest(main, frames)) / 10, " s");
   result.levels.push_back(main);
   const Vector3d main_place = PlaceOn(main, points, frames);
   while (result.levels.size() < kMaxLevels) {
     SupportLevel other = Heaviest(frames, result.levels, kApartM);
-    if (!(other.seconds >= kMinLevel_s)) break;
+    if (!(other.seconds >= kMinLevel_s && SecondsAtRest(other, frames) >= kMinRest_s)) break;
     Vector3d apart = PlaceOn(other, points, frames) - main_place;
     apart -= up.dot(apart) * up;
     // A slope of the whole clip: what lies still farther is one as well.

@@ -5,15 +5,14 @@
 /// The evidence is the lowest point of the body in each frame, with the weight
 ///   w = Δt / (1 + (v / kRestSpeed)²)
 /// Δt: time that the frame stands for, v: speed of the point. In flight the lowest point moves, so its frames hardly
-/// count; at the top of a flight or of a bounce, from which it falls on both sides by more than kMaxFall in 0.14 s, not
-/// at all. The main level is the weighted mean of the heights in the window of 2 kLevelHalfWidthM that
-/// holds the largest weight. It is found when frames at rest (v <= kRestSpeed) within kOnLevelM of it last kMinRest_s,
-/// since somebody who glides, swims or is carried never rests, and when kMinRestShare of the whole weight is there; a
-/// climber rests at all heights.
+/// count; at the top of a flight or of a bounce, from which it falls on both sides with more than kMaxFall, not at all.
+/// The main level is the weighted mean of the heights in the window of 2 kLevelHalfWidthM that has the largest weight.
+/// It is found when frames at rest (v <= kRestSpeed) within kOnLevelM of it last kMinRest_s, since somebody who glides
+/// or swims never rests, and when kMinRestShare of the whole weight is there; a climber rests at all heights.
 ///
-/// Other levels are the same of what is left farther than kApartM from all levels so far. Each needs kMinLevel_s of
-/// rest, and a height that a wrong vertical does not explain: |Δh| > 3 σ_up d, d the horizontal distance of the mean
-/// places. Levels are parallel.
+/// Other levels are the same of what is left farther than kApartM from all levels so far. Each needs a weight of
+/// kMinLevel_s, kMinRest_s of rest, and a height that a wrong vertical does not explain: |Δh| > 3 σ_up d, d the
+/// horizontal distance of the mean places. Levels are parallel.
 ///
 /// A frame at rest within kOnLevelM of a level belongs to it. Others belong to that of the nearest such frame before or
 /// after, the lower one of the two, since a jump ends on either.
@@ -45,7 +44,7 @@ struct LowestPoint {
 
 struct SupportLevel {
   double level_m = 0;  ///< up · x on it
-  double seconds = 0;  ///< of rest
+  double seconds = 0;  ///< Σ w of the frames on it
   double sigma_m = 0;  ///< of level_m for the given vertical; NaN of a level that is given
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The vertical, and where the picture tells it the focal length, from straight lines of one still picture: walls,
+/// The vertical, and where the picture tells it the focal length, from straight lines of one or more pictures: walls,
 /// doors, furniture, poles. Lines that are vertical in the room meet in the picture's vertical vanishing point.
 ///
 /// Pixels are those of an ideal pinhole, about its principal point: p = f (X/Z, Y/Z) of a ray (X, Y, Z); lens

@@ -111,44 +111,47 @@ TEST(TurnToVertical, FurtherViewsTurnByTheirOwnLines) {
   EXPECT_LT((seen[1].lifted[2].points - own.lifted.frames[2].points).norm(), 1e-12) << "as the first view would";
 }
 
-TEST(TurnToVertical, BehindAMovingCameraLinesTurnInTheScene) {
-  Clip still(8, 8), seen(8, 8);
+TEST(TurnToVertical, BehindAMovingCameraLinesAndAGivenGroundTurnInTheScene) {
   PictureVertical lines;
   lines.found = true;
   lines.focal_px = 1000;
   const Vector3d up(0, -1, 0);
   lines.covariance = kDegree * kDegree * (Matrix3d::Identity() - up * up.transpose());
-  std::vector<CameraPose> path(10);
-  for (int t = 0; t < 10; ++t) {
-    const Matrix3d R = RotationFromAxisAngle(Vector3d(0.02 * t, -0.1 * t, 0.03));
-    path[t].camera_from_world_rotation = R;
-    LiftedFrame& frame = seen.lifted.frames[t];
-    frame.up = R * frame.up;
-    frame.points = (frame.points * R.transpose()).eval();
-    seen.states[t].rotations[0] = R * seen.states[t].rotations[0];
-  }
-  TrackSequenceInput input;
-  input.picture_vertical = &lines;
-  const double turn = TurnToVertical(input, {1000, 0}, still.cut_before, &still.lifted, &still.states);
-  input.camera_from_scene = &path;
-  EXPECT_NEAR(TurnToVertical(input, {1000, 0}, seen.cut_before, &seen.lifted, &seen.states), turn, 1e-9);
-  for (int t = 0; t < 10; ++t) {
-    const Matrix3d& R = path[t].camera_from_world_rotation;
-    EXPECT_LT((seen.lifted.frames[t].points * R - still.lifted.frames[t].points).norm(), 1e-9) << t;
-    EXPECT_LT((R.transpose() * seen.states[t].rotations[0] - still.states[t].rotations[0]).norm(), 1e-9) << t;
+  KnownGround ground;
+  ground.up = up;
+  for (const bool given : {false, true}) {
+    Clip still(8, 8), seen(8, 8);
+    std::vector<CameraPose> path(10);
+    for (int t = 0; t < 10; ++t) {
+      const Matrix3d R = RotationFromAxisAngle(Vector3d(0.02 * t, -0.1 * t, 0.03));
+      path[t].camera_from_world_rotation = R;
+      LiftedFrame& frame = seen.lifted.frames[t];
+      frame.up = R * frame.up;
+      frame.points = (frame.points * R.transpose()).eval();
+      seen.states[t].rotations[0] = R * seen.states[t].rotations[0];
+    }
+    TrackSequenceInput input;
+    input.picture_vertical = &lines;
+    input.ground = given ? &ground : nullptr;
+    const double turn = TurnToVertical(input, {1000, 0}, still.cut_before, &still.lifted, &still.states);
+    EXPECT_GT(turn, 0);
+    input.camera_from_scene = &path;
+    EXPECT_NEAR(TurnToVertical(input, {1000, 0}, seen.cut_before, &seen.lifted, &seen.states), turn, 1e-9);
+    for (int t = 0; t < 10; ++t) {
+      const Matrix3d& R = path[t].camera_from_world_rotation;
+      EXPECT_LT((seen.lifted.frames[t].points * R - still.lifted.frames[t].points).norm(), 1e-9) << t;
+      EXPECT_LT((R.transpose() * seen.states[t].rotations[0] - still.states[t].rotations[0]).norm(), 1e-9) << t;
+    }
   }
 }
 
-TEST(TurnToVertical, NothingTurnsWithoutAVerticalOrToAGivenOneBehindAMovingCamera) {
+TEST(TurnToVertical, NothingTurnsWithoutAVertical) {
   TrackSequenceInput input;
-  KnownGround ground;
-  const std::vector<CameraPose> path(10);
   PictureVertical none;
-  for (int what = 0; what < 3; ++what) {
+  for (const PictureVertical* lines :
+       {static_cast<const PictureVertical*>(nullptr), static_cast<const PictureVertical*>(&none)}) {
     Clip clip(8, 8);
-    input.ground = what == 1 ? &ground : nullptr;
-    input.camera_from_scene = what == 1 ? &path : nullptr;
-    input.picture_vertical = what == 2 ? &none : nullptr;
+    input.picture_vertical = lines;
     EXPECT_EQ(TurnToVertical(input, {}, clip.cut_before, &clip.lifted, &clip.states), 0);
     EXPECT_EQ(clip.states[3].rotations[0], clip.lean[3]);
   }

@@ -270,8 +270,10 @@ class TurnedRoom {
   void AddEdges(int count, double yaw, double lean) {
     for (int i = 0; i < count; ++i) {
       const Vector3d side = up.unitOrthogonal(), other = up.cross(side);
-      const Vector3d along = (up + lean * kDegree * (gauss_(random_) * side + gauss_(random_) * other)).normalized();
-      const Vector3d view = RoomInCamera(Uniform(-12, 12), Uniform(-yaw, yaw), 0) * Vector3d::UnitZ();
+      const Vector2d leans = lean * kDegree * Gauss2();
+      const Vector3d along = (up + leans.x() * side + leans.y() * other).normalized();
+      const double pitch = Uniform(-12, 12), turn = Uniform(-yaw, yaw);
+      const Vector3d view = RoomInCamera(pitch, turn, 0) * Vector3d::UnitZ();
       const Vector3d middle = Uniform(3, 8) * view;
       const double half = Uniform(0.3, 0.7);
       edges_.push_back({middle - half * along, middle + half * along});
@@ -287,7 +289,7 @@ class TurnedRoom {
       if (!camera.Project(R * (from - place), &segment.a) || !camera.Project(R * (to - place), &segment.b)) continue;
       const auto inside = [](const Vector2d& p) { return p.x() > 0 && p.x() < 1279 && p.y() > 0 && p.y() < 719; };
       if (!inside(segment.a) || !inside(segment.b)) continue;
-      for (Vector2d* end : {&segment.a, &segment.b}) *end += noise_px * Vector2d(gauss_(random_), gauss_(random_));
+      for (Vector2d* end : {&segment.a, &segment.b}) *end += noise_px * Gauss2();
       picture.segments.push_back(segment);
     }
     Scene other(random_(), 1000);
@@ -300,13 +302,18 @@ class TurnedRoom {
     std::vector<TurnedPicture> pictures;
     for (int i = 0; i < count; ++i) {
       const double yaw = pan * (count > 1 ? 2.0 * i / (count - 1) - 1 : 0) + tremor * gauss_(random_);
-      pictures.push_back(See(RoomInCamera(tremor * gauss_(random_), yaw, tremor * gauss_(random_)), noise_px, clutter));
+      const Vector2d trembles = tremor * Gauss2();
+      pictures.push_back(See(RoomInCamera(trembles.x(), yaw, trembles.y()), noise_px, clutter));
     }
     return pictures;
   }
 
  private:
   double Uniform(double low, double high) { return std::uniform_real_distribution<>(low, high)(random_); }
+  Vector2d Gauss2() {
+    const double first = gauss_(random_);
+    return {first, gauss_(random_)};
+  }
   std::mt19937 random_;
   std::normal_distribution<> gauss_;
   std::vector<std::pair<Vector3d, Vector3d>> edges_;
@@ -337,9 +344,9 @@ TEST(SharedVertical, OfACameraThatGoesSomewhereShareTheVertical) {
 }
 
 TEST(SharedVertical, TellMoreThanEachOfThem) {
-  // Three edges a picture are too few, those of a pan over all of them are not.
+  // The edges of some pictures are too few, those of a pan over all sixteen are not.
   TurnedRoom room(9);
-  room.AddEdges(30, 60, 0);
+  room.AddEdges(16, 60, 0);
   const std::vector<TurnedPicture> pictures = room.Pictures(12, 0, 55, 0.3);
   int alone = 0;
   for (const TurnedPicture& picture : pictures) {
@@ -348,7 +355,7 @@ TEST(SharedVertical, TellMoreThanEachOfThem) {
   const PictureVertical lines = FindSharedVertical(pictures, MakePinhole(1280, 720, 1000));
   ASSERT_TRUE(lines.found) << lines.why;
   EXPECT_LT(alone, 12);
-  EXPECT_GE(lines.num_segments, 20);
+  EXPECT_GE(lines.num_segments, 14);
   EXPECT_LT(AngleDeg(lines.up, room.up), 0.3);
 }
 

@@ -134,13 +134,24 @@ void PartLabelRounds::Observe(SequenceProblem* problem) {
   }
 }
 
+size_t PartLabelRounds::MostUsedInWindow(const std::vector<int>& frames) const {
+  const size_t window = max_kept_ - max_kept_ / 11;  // of the solve: all but the tenth on top of it
+  size_t used = 0, most = 0;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    used += is_used_[size_t(frames[i])] != 0 ? 1 : 0;
+    if (i >= window) used -= is_used_[size_t(frames[i - window])] != 0 ? 1 : 0;
+    most = std::max(most, used);
+  }
+  return most;
+}
+
 void PartLabelRounds::StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) {
   if (is_used_.empty()) BeginRounds(frames, false);
   const double s = options_.rounds > 1 ? static_cast<double>(round) / (options_.rounds - 1) : 1.0;
   const double kernel = options_.start_kernel * std::pow(options_.kernel / options_.start_kernel, s);
   if (later_) {
-    const auto used = std::count_if(frames.begin(), frames.end(), [&](int t) { return is_used_[size_t(t)] != 0; });
-    kept_.SetCapacity(max_kept_ * size_t(used) / frames.size());
+    const size_t most = MostUsedInWindow(frames);
+    kept_.SetCapacity(std::min(max_kept_, most + most / 10 + 1));
   }
   ParallelFor(static_cast<int>(frames.size()), num_threads_, [&](int i) {
     const auto t = size_t(frames[i]);

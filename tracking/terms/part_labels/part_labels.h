@@ -11,8 +11,8 @@
 ///
 /// The matches of a frame take 100 KB. In a clip that is solved in windows (ClipTerm::BeginRounds()) a round notes the
 /// states at which it starts, a frame's matches are computed when they are asked for, and of more than kKeptMatches
-/// those that were computed first are forgotten: the same bits, and few are computed twice. Of frames of which
-/// some have masks the same share is kept.
+/// those that were computed first are forgotten: the same bits, and few are computed twice. Where few frames of a
+/// window have masks fewer are kept.
 #pragma once
 
 #include <array>
@@ -106,6 +106,9 @@ class PartLabelRounds : public ClipTerm {
   void StartRound(int round, const std::vector<int>& frames, SequenceProblem* problem) override;
 
  private:
+  /// The largest number of frames with masks in a window of the solve.
+  [[nodiscard]] size_t MostUsedInWindow(const std::vector<int>& frames) const;
+
   const PartLabelSequence& labels_;
   PartLabelOptions options_;
   std::shared_ptr<const Skinner> skinner_;
