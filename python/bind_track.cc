@@ -33,8 +33,8 @@ constexpr const char* kFromArraysDoc =
 
 Needed are poses (T, 3J), trans (T, 3) and a camera: K (3, 3), or camera (T, 3) of weak perspective; also taken are
 betas, timestamps (or mocap_framerate), body, frame_status, joints, coco17, joint_sigma, root_sigma, distortion, image_size,
-world_from_camera, world_level. Track.to_arrays() gives them all, so that Track.from_arrays(**{**track.to_arrays(), "trans": moved})
-is the track with one array changed; joints and coco17 stay as they are given.
+world_from_camera, world_level. Track.to_arrays() gives them all, so that
+Track.from_arrays(**{**track.to_arrays(), "trans": moved}) is the track with one array changed; joints and coco17 stay as they are given.
 Raises ValueError naming the array, what it holds and what was expected.)";
 
 const Track& TrackOf(const py::object& self) { return self.cast<const TrackObject&>().track; }

@@ -6,8 +6,7 @@
 /// (Track::level_m). Within a second of a change of level, a foot whose lowest vertex is within 4 cm of the other level
 /// stands on it, as whoever steps onto a box has one foot there before the other leaves the ground; and what is above
 /// the lower level is beside the box, not in it; balance and lean count the frame's own level alone. A frame is in
-/// contact if h ≤ 4 cm. Between two contacts at t₀ and t₁ a
-/// body without support can be at most
+/// contact if h ≤ 4 cm. Between two contacts at t₀ and t₁ a body without support can be at most
 ///   h(t) ≤ 4 cm + ½ g (t − t₀) (t₁ − t),   g = 9.81 m/s²
 /// above the ground, or above the line between the levels that it leaves and reaches, because its centre of mass falls
 /// freely; a stretch that the clip's ends cut short is taken to end there. Frames above that bound hover without a

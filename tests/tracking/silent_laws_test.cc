@@ -9,11 +9,10 @@
 
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/evaluation/metrics.h"
-#include "data_tools/learned/lifter_weights_io.h"
-#include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/math/rotation.h"
+#include "tests/support/clip_input.h"
 #include "tracking/clip/clip_fit.h"
 
 namespace bodyloom::silent_laws_test {
@@ -100,16 +99,10 @@ Motion Carried() {
 }
 
 TrackSequenceResult Tracked(const SynthClip& clip, const GroundOptions& ground) {
-  TrackSequenceInput input;
-  input.body = &BuiltinBody();
-  input.keypoints = &clip.keypoints;
-  input.prior = &BuiltinPosePrior();
-  input.lifter = &BuiltinLifter();
-  input.camera = clip.truth.camera;
   TrackSequenceOptions options;
   options.num_threads = 2;
   options.ground = ground;
-  return FitClip(input, options);
+  return FitClip(KnownCameraInput(clip), options);
 }
 
 /// Mean error of all joints after a similarity a frame, and in the camera's frame, mm.

@@ -17,10 +17,9 @@ constexpr double kSystematicM = 0.015;  ///< σ of what all frames are off toget
 /// Of the scatter of heights about their level, apart from kSystematicM, which no time averages. The whole error of
 /// what touches the ground lasts longer: kTouchErrorLasts_s (terms/surface_contact/clip_contacts.h).
 constexpr double kScatterLasts_s = 0.5;
-constexpr double kMaxTiltSigmas = 3;  ///< a height that so many of the vertical's σ explain is no level
-constexpr size_t kMaxLevels = 12;     ///< more are not levels but a slope or errors
-constexpr double kRestWeight = 0.5;   ///< w / Δt of a frame at rest
-
+constexpr double kMaxTiltSigmas = 3;    ///< a height that so many of the vertical's σ explain is no level
+constexpr size_t kMaxLevels = 12;       ///< more are not levels but a slope or errors
+constexpr double kRestWeight = 0.5;     ///< w / Δt of a frame at rest
 constexpr double kFallWindow_s = 0.14;  ///< on each side of a frame, at least; at most twice that
 
 struct RestingFrame {
@@ -104,12 +103,12 @@ Vector3d PlaceOn(const SupportLevel& level, std::span<const LowestPoint> points,
 }
 
 /// Weight of the frames on a level.
-double SecondsOn(const SupportLevel& level, const std::vector<RestingFrame>& frames) {
-  double seconds = 0;
+double WeightOn(const SupportLevel& level, const std::vector<RestingFrame>& frames) {
+  double weight = 0;
   for (const RestingFrame& frame : frames) {
-    if (std::abs(frame.height_m - level.level_m) <= kOnLevelM) seconds += frame.weight;
+    if (std::abs(frame.height_m - level.level_m) <= kOnLevelM) weight += frame.weight;
   }
-  return seconds;
+  return weight;
 }
 
 /// Seconds of frames at rest on a level.
@@ -155,19 +154,19 @@ SupportLevels FindSupportLevels(std::span<const LowestPoint> points, const Vecto
   SupportLevel main;
   if (main_level_m) {
     main = {*main_level_m, 0, std::numeric_limits<double>::quiet_NaN()};
-    main.seconds = SecondsOn(main, frames);
+    main.seconds = WeightOn(main, frames);
   } else {
     main = Heaviest(frames, {}, 0);
-    const double on_it_s = main.seconds > 0 ? SecondsOn(main, frames) : 0;
+    const double weight = main.seconds > 0 ? WeightOn(main, frames) : 0;
     if (!(SecondsAtRest(main, frames) >= kMinRest_s)) {
       result.why = "nothing is seen to rest for long enough";
       return result;
     }
-    if (!(on_it_s >= kMinRestShare * rest_s)) {
+    if (!(weight >= kMinRestShare * rest_s)) {
       result.why = "the body does not rest at one height";
       return result;
     }
-    main.seconds = on_it_s;
+    main.seconds = weight;
   }
   result.why = Concatenate("the body rests on it for ", std::round(10 * SecondsAtRest(main, frames)) / 10, " s");
   result.levels.push_back(main);
@@ -179,7 +178,7 @@ SupportLevels FindSupportLevels(std::span<const LowestPoint> points, const Vecto
     apart -= up.dot(apart) * up;
     // A slope of the whole clip: what lies still farther is one as well.
     if (std::abs(other.level_m - main.level_m) <= kMaxTiltSigmas * up_sigma_rad * apart.norm()) break;
-    other.seconds = SecondsOn(other, frames);
+    other.seconds = WeightOn(other, frames);
     result.levels.push_back(other);
   }
   result.of_frame = AssignFrames(frames, result.levels);

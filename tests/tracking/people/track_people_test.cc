@@ -15,7 +15,7 @@
 #include "data_tools/synthesis/clips/synth_clip.h"
 #include "geometry/body/posed_body.h"
 #include "geometry/math/rotation.h"
-#include "tests/support/unknown_focal.h"
+#include "tests/support/clip_input.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/problem/sequence_problem.h"
 #include "tracking/problem/stature.h"

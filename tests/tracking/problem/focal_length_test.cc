@@ -11,8 +11,8 @@
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
+#include "tests/support/clip_input.h"
 #include "tests/support/sequence_scene.h"
-#include "tests/support/unknown_focal.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/clip/uncertainty.h"
 

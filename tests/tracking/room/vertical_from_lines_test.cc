@@ -8,9 +8,9 @@
 
 #include "data_tools/body/builtin_body.h"
 #include "data_tools/learned/lifter_weights_io.h"
-#include "data_tools/learned/pose_prior_io.h"
 #include "data_tools/synthesis/clips/demo_motion.h"
 #include "data_tools/synthesis/clips/synth_clip.h"
+#include "tests/support/clip_input.h"
 #include "tracking/clip/clip_fit.h"
 #include "tracking/initialise/initial_states.h"
 #include "tracking/initialise/lifted_start.h"
@@ -43,12 +43,7 @@ PictureVertical LinesOf(const Eigen::Vector3d& up, const Camera& camera) {
 
 GroundSummary GroundOf(const SynthClip& clip, const PictureVertical* lines, const KnownGround* ground = nullptr,
                        std::vector<PlanEntry>* plan = nullptr) {
-  TrackSequenceInput input;
-  input.body = &BuiltinBody();
-  input.keypoints = &clip.keypoints;
-  input.prior = &BuiltinPosePrior();
-  input.lifter = &BuiltinLifter();
-  input.camera = clip.truth.camera;
+  TrackSequenceInput input = KnownCameraInput(clip);
   if (clip.truth.HasMovingCamera()) input.camera_from_scene = &clip.truth.camera_from_scene;
   input.picture_vertical = lines;
   input.ground = ground;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A synthetic clip's 2D joints as a fit gets them whose focal length nobody says.
+/// A synthetic clip's 2D joints as a fit gets them, whose camera is known or whose focal length nobody says.
 #pragma once
 
 #include "data_tools/body/builtin_body.h"
@@ -11,13 +11,21 @@
 
 namespace bodyloom {
 
-/// With built-in body, prior and lifter; of the camera only the size of its images. The clip's joints are borrowed.
-inline TrackSequenceInput UnknownFocalInput(const SynthClip& clip) {
+/// With built-in body, prior and lifter, and the clip's camera. The clip's joints are borrowed.
+inline TrackSequenceInput KnownCameraInput(const SynthClip& clip) {
   TrackSequenceInput input;
   input.body = &BuiltinBody();
   input.keypoints = &clip.keypoints;
   input.prior = &BuiltinPosePrior();
   input.lifter = &BuiltinLifter();
+  input.camera = clip.truth.camera;
+  return input;
+}
+
+/// The same with the size of the camera's images alone.
+inline TrackSequenceInput UnknownFocalInput(const SynthClip& clip) {
+  TrackSequenceInput input = KnownCameraInput(clip);
+  input.camera = TrackSequenceInput().camera;
   input.camera.width = clip.truth.camera.width;
   input.camera.height = clip.truth.camera.height;
   return input;
